@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The sRGB transfer curve (IEC 61966-2-1), in the one place that knows it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace vecino {
+
+/// Linear [0,1] to sRGB-encoded [0,1]; values outside are clipped first.
+inline float srgb_encode(float linear) {
+    const float x = std::clamp(linear, 0.0f, 1.0f);
+    return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
+}
+
+/// sRGB-encoded [0,1] to linear [0,1].
+inline float srgb_decode(float encoded) {
+    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+/// Encoded [0,1] to 8 bit, rounded to nearest.
+inline std::uint8_t quantise_8bit(float encoded) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(encoded, 0.0f, 1.0f) * 255.0f));
+}
+
+}  // namespace vecino

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Files as bytes. A file is read whole or refused with the system's reason; it is written whole or
+// not at all: under a temporary name beside it, then renamed.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace vecino {
+
+/// Throws Error(file): "PATH: cannot be read: REASON", on one line.
+[[noreturn]] void cannot_read(const std::string& path, const std::string& reason);
+[[noreturn]] void cannot_write(const std::string& path, const std::string& reason);
+
+/// Line breaks and control characters become spaces.
+std::string one_line(std::string text);
+
+/// Throws Error(file) if there is no such file, or it is a directory or not ours to read.
+void require_readable(const std::string& path);
+
+/// All bytes of a file. Throws Error(file).
+std::string read_file(const std::string& path);
+
+/// A new, empty file in the directory of a target, with the target's extension. Whatever happens
+/// before replace_target(), the target stays as it was and nothing stays behind.
+class TemporaryFile {
+  public:
+    /// Throws Error(file), naming the target and the reason, if no file can be made there.
+    explicit TemporaryFile(const std::string& target);
+    ~TemporaryFile();
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] std::FILE* stream() const { return stream_; }  ///< to write to, not to close
+
+    /// Takes the target's place. Throws Error(file) if any write to the stream failed, as on a full
+    /// disk.
+    void replace_target();
+
+  private:
+    std::string target_;
+    std::string path_;
+    std::FILE* stream_ = nullptr;
+};
+
+}  // namespace vecino

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A scene flattened for tracing: what the kernels read, and Embree's acceleration structure.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/embree_scene.h"
+#include "core/scene.h"
+#include "core/trace_task.h"
+
+namespace vecino {
+
+struct FlatScene {
+    std::vector<SurfaceRecord> surfaces;  ///< triangles, then spheres; never empty
+    std::vector<VertexNormals>
+        vertex_normals;  ///< one per triangle; empty when no mesh has normals
+    std::vector<LightRecord> lights;
+    std::uint32_t triangle_count = 0;
+    std::unique_ptr<EmbreeScene> embree;
+};
+
+FlatScene flatten(const Scene& scene);
+
+/// The part of a task that the scene fixes. The flat scene must outlive it.
+TraceTask trace_task(const Scene& scene, const FlatScene& flat, float aspect);
+
+}  // namespace vecino

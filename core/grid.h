@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Two-dimensional arrays of values. Row 0 is on top, rows are contiguous. The centre of pixel (x,
+// y) has uv = ((x + 0.5) / width, (y + 0.5) / height).
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vecino {
+
+/// Width and height in pixels.
+struct Extent {
+    int width = 0;
+    int height = 0;
+
+    [[nodiscard]] std::size_t area() const {
+        return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    }
+    friend bool operator==(const Extent&, const Extent&) = default;
+};
+
+/// "512x256"
+inline std::string size_text(Extent size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+/// Low-resolution size for a reduction factor f >= 1: max(1, floor(size / f)), per axis.
+constexpr Extent reduced(Extent full, int factor) {
+    const auto side = [factor](int n) { return n / factor > 1 ? n / factor : 1; };
+    return {side(full.width), side(full.height)};
+}
+
+/// One value per pixel. An empty grid (0 x 0) stands for a plane that was not made.
+template <class T>
+class Grid {
+  public:
+    Grid() = default;
+    explicit Grid(Extent size, T fill = T{}) : size_(size), values_(size.area(), fill) {}
+
+    [[nodiscard]] Extent size() const { return size_; }
+    [[nodiscard]] bool empty() const { return values_.empty(); }
+
+    /// Precondition: 0 <= x < width and 0 <= y < height.
+    T& operator()(int x, int y) { return values_[index(x, y)]; }
+    const T& operator()(int x, int y) const { return values_[index(x, y)]; }
+
+    std::vector<T>& values() { return values_; }
+    [[nodiscard]] const std::vector<T>& values() const { return values_; }
+
+    friend bool operator==(const Grid&, const Grid&) = default;
+
+  private:
+    [[nodiscard]] std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+               static_cast<std::size_t>(x);
+    }
+
+    Extent size_;
+    std::vector<T> values_;
+};
+
+/// Linear RGB.
+using Image = Grid<glm::vec3>;
+
+}  // namespace vecino

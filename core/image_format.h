@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What image files can hold, and what of ours may go into them. Knows nothing of how files are read
+// or written (core/image_io.cpp does), so that a command can refuse a name before it works for an
+// hour.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/frame.h"
+#include "core/planes.h"
+
+namespace vecino {
+
+/// What a file keeps of a frame.
+enum class Content {
+    planes,  ///< all of it, as floats
+    linear,  ///< radiance, as floats
+    rgbe,  ///< radiance, as 8-bit mantissas and a shared exponent: neither NaN nor negative numbers
+    encoded,  ///< radiance, clipped, sRGB-encoded, 8 bit
+};
+
+/// By the extension of a path. Throws an error of the given code if it is none that we can write.
+Content content_of(const std::string& path, ExitCode code);
+
+/// Empty, or what is wrong with the size of an image.
+std::string size_fault(Extent size);
+
+/// Throws Error(mismatch) if the image has no pixels or too many.
+void require_pixels(Extent size, const std::string& path);
+
+/// The planes that a frame holds. Throws Error(mismatch) if they do not share one size.
+std::vector<const PlaneInfo*> planes_to_write(const Frame& frame, const std::string& path);
+
+/// Throws Error(non_finite) naming the first pixel that is not a number.
+void require_finite(const Image& image, const std::string& path);
+
+/// A value that cannot stand in a plane, for an error.
+struct BadValue {
+    float value;
+    std::size_t index;  ///< of the pixel
+    int width;          ///< of the image
+    std::string channel;
+};
+[[noreturn]] void fail(const BadValue& bad, const std::string& path, const std::string& allowed);
+
+}  // namespace vecino

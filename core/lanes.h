@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// VECINO_WIDTH numbers side by side, through the compiler's vector types: portable, no intrinsics.
+// Included only by trace_kernel.cpp, which is compiled once per width; everything is in an
+// anonymous namespace so that no two translation units share code that was compiled for different
+// machines.
+#pragma once
+
+#include <cstdint>
+
+namespace vecino {
+namespace {
+
+constexpr int W = VECINO_WIDTH;
+
+using Float = float __attribute__((vector_size(4 * W)));
+using Int = std::int32_t __attribute__((vector_size(4 * W)));
+using Uint = std::uint32_t __attribute__((vector_size(4 * W)));
+using Mask = Int;  ///< -1 or 0 per lane
+
+struct Float3 {
+    Float x, y, z;
+};
+
+inline Float splat(float value) {
+    return Float{} + value;
+}
+inline Uint splat(std::uint32_t value) {
+    return Uint{} + value;
+}
+inline Float3 splat3(const float (&v)[3]) {
+    return {splat(v[0]), splat(v[1]), splat(v[2])};
+}
+
+template <class V>
+inline V load(const void* from) {
+    V v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+template <class V>
+inline void store(void* to, V v) {
+    __builtin_memcpy(to, &v, sizeof v);
+}
+
+inline Float select(Mask mask, Float a, Float b) {
+    return mask ? a : b;
+}
+inline Float3 select(Mask m, Float3 a, Float3 b) {
+    return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+
+inline bool any(Mask mask) {
+    std::int32_t bits = 0;
+    for (int i = 0; i < W; ++i) bits |= mask[i];
+    return bits != 0;
+}
+inline int count(Mask mask) {
+    int n = 0;
+    for (int i = 0; i < W; ++i) n -= mask[i];
+    return n;
+}
+
+inline Float sqrt(Float v) {
+    alignas(4 * W) float lanes[W];
+    store(lanes, v);
+#pragma omp simd
+    for (int i = 0; i < W; ++i) lanes[i] = __builtin_sqrtf(lanes[i]);
+    return load<Float>(lanes);
+}
+inline Float max(Float a, Float b) {
+    return a > b ? a : b;
+}
+inline Float min(Float a, Float b) {
+    return a < b ? a : b;
+}
+inline Float abs(Float v) {
+    return (Float)((Int)v & 0x7FFFFFFF);
+}
+inline Float copysign(float magnitude, Float sign) {
+    return (Float)(((Int)sign & (Int)splat(0x80000000u)) | (Int)splat(magnitude));
+}
+
+inline Float3 operator+(Float3 a, Float3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Float3 operator-(Float3 a, Float3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Float3 operator*(Float3 a, Float3 b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+inline Float3 operator*(Float3 a, Float b) {
+    return {a.x * b, a.y * b, a.z * b};
+}
+inline Float dot(Float3 a, Float3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Float3 normalise(Float3 v) {
+    return v * (1.0f / sqrt(dot(v, v)));
+}
+
+/// sin and cos of 2 pi u for u in [0, 1): minimax polynomials on [-pi/4, pi/4], error below 1e-7.
+/// Our own, so that a render does not depend on the math library.
+inline void sincos_turns(Float u, Float& sine, Float& cosine) {
+    // u = quarter / 4 + r with r in [-1/8, 1/8]
+    const Int quarter = __builtin_convertvector(u * 4.0f + 0.5f, Int);
+    const Float r = (u - __builtin_convertvector(quarter, Float) * 0.25f) * 6.283185307f;
+    const Float r2 = r * r;
+    const Float s =
+        r + r * r2 * (-1.6666654611e-1f + r2 * (8.3321608736e-3f + r2 * -1.9515295891e-4f));
+    const Float c =
+        1.0f - 0.5f * r2 +
+        r2 * r2 *
+            (4.166664568298827e-2f + r2 * (-1.388731625493765e-3f + r2 * 2.443315711809948e-5f));
+    const Mask swap = (quarter & 1) != 0;
+    const Float sine_magnitude = select(swap, c, s);
+    const Float cosine_magnitude = select(swap, s, c);
+    sine = select((quarter & 2) != 0, -sine_magnitude, sine_magnitude);
+    cosine = select(((quarter + 1) & 2) != 0, -cosine_magnitude, cosine_magnitude);
+}
+
+}  // namespace
+}  // namespace vecino

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Path tracing: from a scene to a frame. The result depends on the scene and the settings, never on
+// the number of threads or the order in which pixels are traced.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/frame.h"
+#include "core/planes.h"
+#include "core/scene.h"
+
+namespace vecino {
+
+enum class LightSampling {
+    none,  ///< a path finds a light only by chance (the thesis's path tracing)
+    nee,   ///< next-event estimation: one shadow ray per surface
+};
+
+enum class Sampler {
+    independent,
+    sobol,  ///< Owen-scrambled
+};
+
+enum class FirstHit {
+    first_sample,  ///< of the pixel's first, jittered, sample (the thesis's)
+    centre,        ///< along the ray through the pixel centre
+};
+
+struct RenderSettings {
+    Extent size{512, 512};  ///< full resolution; fixes the camera's aspect ratio
+    int reduction = 1;      ///< the traced frame is reduced(size, reduction)
+    int spp = 64;           ///< samples (paths) per traced pixel, >= 1
+    int max_depth = 2;      ///< surface bounces that may carry light, >= 0
+    LightSampling light_sampling = LightSampling::nee;
+    Sampler sampler = Sampler::sobol;
+    FirstHit first_hit = FirstHit::first_sample;
+    std::uint32_t seed = 1;
+    Planes planes = Planes::all();  ///< beside radiance, which is always made
+    int threads = 0;                ///< 0: all
+    int simd_width = 0;  ///< samples traced side by side: 4, 8 or 16; 0: the machine's widest
+};
+
+struct RenderStatistics {
+    double scene_s = 0;  ///< building the acceleration structure
+    double trace_s = 0;
+    std::uint64_t samples = 0;
+    std::uint64_t rays = 0;
+    std::uint64_t dropped_samples = 0;    ///< samples that were not finite; they enter no mean
+    std::uint64_t non_finite_pixels = 0;  ///< pixels whose mean is beyond the range of float
+    int threads = 0;
+    int simd_width = 0;
+};
+
+struct Render {
+    Frame frame;
+    RenderStatistics statistics;
+};
+
+/// Called now and then, from one thread at a time, with the share of the work done in [0, 1].
+/// Returning false stops the render, which then throws Error(interrupted).
+using Progress = std::function<bool(double done)>;
+
+/// The packet widths that this build and this machine can trace with, widest first.
+std::vector<int> simd_widths();
+
+/// Traces a frame. The variance plane is made from 2 spp on; with the Sobol sampler it is estimated
+/// from four independent scramblings, which changes the radiance too and makes it about 2 dB
+/// noisier. No other plane changes another. Throws Error(usage) for settings out of range, with the
+/// name of the setting. Memory: per traced pixel 12 bytes for each three-channel and 4 for each
+/// one-channel plane asked for (at most 96), nothing per sample.
+Render render(const Scene& scene, const RenderSettings& settings, const Progress& progress = {});
+
+}  // namespace vecino

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the tracing kernels read: a scene flattened into plain arrays. The kernels are compiled once
+// per packet width with different instruction sets, so this header holds plain data only: an inline
+// function shared between those translation units could be linked in its widest form and crash on a
+// smaller machine.
+#pragma once
+
+#include <cstdint>
+
+namespace vecino {
+
+class EmbreeScene;
+
+/// A triangle or a sphere, as shading sees it. One cache line. Triangles come first, then spheres.
+struct alignas(64) SurfaceRecord {
+    float shape[4];  ///< triangle: unit normal n and dot(n, p0); sphere: centre and radius
+    float albedo[3];
+    float offset_world;  ///< distance by which rays leave the surface, so that they do not hit it
+                         ///< again
+    float emission[3];   ///< radiance
+    std::int32_t object_id;
+    std::int32_t padding[4];
+};
+
+enum class LightKind : std::int32_t { parallelogram, triangle, sphere };
+
+/// An emitter, as next-event estimation sees it.
+struct LightRecord {
+    LightKind kind;
+    float origin[3];  ///< a corner, or the sphere's centre
+    float edge1[3];
+    float edge2[3];
+    float normal[3];  ///< unit; the side that emits
+    float radiance[3];
+    float area;
+    float radius;
+    float offset_world;
+    float selection_probability;
+    float selection_cdf;  ///< sum of the probabilities up to and including this light
+};
+
+/// Shading normals at the corners of a triangle.
+struct VertexNormals {
+    float corner[3][3];
+};
+
+struct TraceTask {
+    const EmbreeScene* embree;
+    const SurfaceRecord* surfaces;
+    const VertexNormals* vertex_normals;  ///< one per triangle, or null when no mesh has normals
+    const LightRecord* lights;
+    std::uint32_t light_count;
+    std::uint32_t triangle_count;
+
+    float background[3];
+    bool has_background;
+
+    // The ray through uv is camera_origin + t (forward + (2u - 1) right + (1 - 2v) up).
+    float camera_origin[3];
+    float camera_forward[3];
+    float camera_right[3];
+    float camera_up[3];
+    std::int32_t width, height;
+
+    std::int32_t max_depth;
+    bool next_event_estimation;
+    bool sobol;
+    /// 1, or kStreams: Sobol samples are dealt to that many independent scramblings, sample i to i
+    /// % streams. Their spread is the only sound estimate of the variance, at the price of about 2
+    /// dB: each stratifies a quarter.
+    std::uint32_t streams;
+    std::uint32_t seed;
+};
+
+constexpr int kBlockSamples = 64;  ///< samples summed together; see accumulate.h
+constexpr int kStreams = 4;        ///< independent scramblings behind the variance of Sobol samples
+
+/// Radiance of up to 64 samples of one pixel, split by bounces. Unused samples are 0.
+struct SampleBlock {
+    alignas(64) float emission[3][kBlockSamples];
+    alignas(64) float direct[3][kBlockSamples];
+    alignas(64) float indirect[3][kBlockSamples];
+};
+
+struct FirstHitRecord {
+    float position_world[3];
+    float normal_world[3];
+    float albedo[3];
+    float distance_world;
+    std::int32_t object_id;
+};
+
+/// Samples [first_sample, first_sample + count) of one pixel; count <= kBlockSamples.
+struct SampleRange {
+    std::int32_t x, y;
+    std::uint32_t first_sample;
+    std::int32_t count;
+};
+
+/// A tracer for one packet width.
+struct TraceKernel {
+    int width;
+    /// Fills block; writes the hit of the range's first sample to first_hit unless that is null.
+    /// Returns rays traced.
+    std::uint64_t (*trace_samples)(const TraceTask&, const SampleRange&, SampleBlock&,
+                                   FirstHitRecord* first_hit);
+    /// The first hits of rays through the centres of pixels (x .. x + count - 1, y); count <=
+    /// kBlockSamples.
+    std::uint64_t (*trace_centres)(const TraceTask&, const SampleRange&, FirstHitRecord*);
+};
+
+/// The kernel for a width, or null if this build or this machine lacks it.
+const TraceKernel* find_trace_kernel(int width);
+
+}  // namespace vecino

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The subcommands of the program. Each adds itself to the parser; when it is the one on the command
+// line it stores what to do in chosen, which main runs.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/error.h"
+
+namespace vecino {
+
+using Action = std::function<ExitCode()>;
+
+void add_render_command(CLI::App& app, Action& chosen);
+void add_upsample_command(CLI::App& app, Action& chosen);
+void add_compare_command(CLI::App& app, Action& chosen);
+void add_run_command(CLI::App& app, Action& chosen);
+void add_report_command(CLI::App& app, Action& chosen);
+void add_list_command(CLI::App& app, Action& chosen);
+
+/// What --version prints: this program, its libraries, packet width and threads.
+std::string version_text();
+
+/// Libraries, machine and build, for run.json.
+nlohmann::json version_json();
+
+/// "12.3 dB" or "-" for none.
+std::string number_text(double value, int digits);
+
+/// Adds a flag for a row of an option table; text is what was given on the command line.
+template <class Row>
+CLI::Option* add_table_option(CLI::App& command, const Row& row, std::string& text) {
+    return command
+        .add_option(std::string(row.flag), text,
+                    std::string(row.summary) + " (" + std::string(row.allowed) + ")")
+        ->type_name("");
+}
+
+}  // namespace vecino

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// How far an image is from its reference. Built from OpenCV primitives in double. A pair with a
+// non-finite value is never scored. Definitions: the table in metrics.cpp, printed by `vecino list
+// metrics`.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/grid.h"
+
+namespace vecino {
+
+struct Metrics {
+    std::optional<double> psnr_float_db;  ///< none: the clipped, encoded images are identical
+    std::optional<double> psnr_db;        ///< none: the 8-bit images are identical
+    bool identical_8bit = false;
+    std::optional<double> ssim;  ///< none: see ssim_reason
+    std::string ssim_reason;
+    double relmse = 0;
+    double mae = 0;
+    double max_error = 0;
+    double p99_error = 0;
+};
+
+/// Where values are NaN or infinite, in either image.
+struct NonFinite {
+    std::size_t count = 0;  ///< channel values, both images together
+    bool in_test = false;   ///< the first one stands in the test image (else in the reference)
+    int x = 0, y = 0, channel = 0;
+};
+
+struct Comparison {
+    NonFinite non_finite;
+    std::optional<Metrics> metrics;  ///< none when non_finite.count > 0
+};
+
+/// Compares linear RGB images. Throws Error(mismatch) when the sizes differ, naming both.
+Comparison compare(const Image& test, const Image& reference);
+
+struct MetricInfo {
+    std::string_view name;     ///< key in results and --json
+    std::string_view formula;  ///< one line
+    bool higher_is_better;
+    std::optional<double> (*value)(const Metrics&);
+};
+
+/// All metrics, in the order in which they are shown.
+std::span<const MetricInfo> all_metrics();
+
+}  // namespace vecino

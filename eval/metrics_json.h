@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Metrics as JSON, as `compare --json` and results.jsonl hold them. A metric without a value is
+// null.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "eval/metrics.h"
+
+namespace vecino {
+
+nlohmann::json metrics_json(const Metrics& metrics);
+nlohmann::json comparison_json(const Comparison& comparison);
+
+/// test - reference, linear. Precondition: equal sizes.
+Image difference(const Image& test, const Image& reference);
+
+std::string size_mismatch_text(const std::string& a, Extent a_size, const std::string& b,
+                               Extent b_size);
+
+}  // namespace vecino

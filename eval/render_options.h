@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The options of a render: one name for matrices and one flag for the command line each, from one
+// table.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/json_read.h"
+#include "core/render.h"
+
+namespace vecino {
+
+struct RenderOption {
+    std::string_view name;     ///< key in a matrix
+    std::string_view flag;     ///< on the command line
+    std::string_view allowed;  ///< for help
+    std::string_view summary;
+    void (*set)(RenderSettings&, const JsonValue&);  ///< throws Error(usage)
+    nlohmann::json (*get)(const RenderSettings&);    ///< as it stands in results
+    std::string (*slug)(const RenderSettings&);      ///< as it stands in a cell's name
+};
+
+/// Options that make the image what it is; all may be axes of a matrix.
+std::span<const RenderOption> render_options();
+
+/// A value from the command line as JSON: a number where it reads as one, [W, H] for WxH, else a
+/// string.
+nlohmann::json option_value(const std::string& text);
+
+}  // namespace vecino

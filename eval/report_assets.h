@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The files of eval/report/ and Chart.js, embedded into the program by cmake/Embed.cmake.
+#pragma once
+
+#include <string_view>
+
+namespace vecino {
+
+extern const std::string_view kReportHtml;
+extern const std::string_view kReportCss;
+extern const std::string_view kReportJs;
+extern const std::string_view kChartJs;
+
+}  // namespace vecino

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/report_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "eval/run_directory.h"
+#include "filters/schemes.h"
+
+namespace vecino {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::string_view kPathShape = "crossRot";
+constexpr std::string_view kShapes[] = {"rect",         "triangle", "rectRot", "circle",
+                                        "triangleDown", "star",     "cross"};
+constexpr int kColours = 8;
+
+void require_row(const Json& row, const std::string& file) {
+    const auto fail = [&](const std::string& what) {
+        throw Error(ExitCode::file,
+                    file + ": row of cell " + row["cell"].get<std::string>() + " lacks " + what);
+    };
+    for (const char* key : {"group", "scene", "method", "status"}) {
+        if (!row.contains(key) || !row[key].is_string()) fail(key);
+    }
+    if (!row.value("params", Json()).is_object()) fail("params");
+    if (row["status"] != "ok") return;
+    for (const char* key : {"metrics", "counts", "time_s"}) {
+        if (!row.value(key, Json()).is_object()) fail(key);
+    }
+    for (const char* key : {"reconstruct", "total"}) {
+        if (!row["time_s"].value(key, Json()).is_number()) fail(std::string("time_s.") + key);
+    }
+}
+
+/// Cells in the order in which they first stand in the file: that of the matrix.
+std::vector<std::string> cell_order(const std::string& text) {
+    std::vector<std::string> order;
+    std::set<std::string> known;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+        const Json row = Json::parse(line, nullptr, false);
+        if (!row.is_object() || !row.value("cell", Json()).is_string()) continue;
+        if (known.insert(row["cell"]).second) order.push_back(row["cell"]);
+    }
+    return order;
+}
+
+void read_rows(ReportData& data) {
+    const RunDirectory directory = RunDirectory::open(data.directory);
+    const std::string file = directory.file("results.jsonl");
+    auto rows = directory.rows();
+    for (const std::string& cell : cell_order(read_file(file))) {
+        require_row(rows.at(cell), file);
+        data.row.emplace(cell, data.rows.size());
+        data.rows.push_back(std::move(rows.at(cell)));
+    }
+    if (data.rows.empty()) throw Error(ExitCode::file, file + ": holds no results");
+}
+
+Json read_run(const std::string& path) {
+    // A first run that was killed has results, but no run.json.
+    if (!std::filesystem::exists(path)) return Json::object();
+    const Json run = Json::parse(read_file(path), nullptr, false);
+    if (!run.is_object()) throw Error(ExitCode::file, path + ": is not a JSON object");
+    return run;
+}
+
+std::vector<MethodStyle> method_styles(const std::vector<GroupSummary>& groups) {
+    std::vector<std::string> names;
+    for (const Scheme& scheme : all_schemes()) names.emplace_back(scheme.name);
+    std::set<std::string> used;
+    for (const GroupSummary& group : groups) {
+        used.insert(group.method);
+        const bool known = std::ranges::find(names, group.method) != names.end();
+        if (!known && group.method != "path") names.push_back(group.method);
+    }
+    // A scheme keeps its looks whichever others a run holds.
+    std::vector<MethodStyle> styles{{"path", kPathShape, 0}};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const auto colour = static_cast<int>(i % kColours) + 1;
+        styles.push_back({names[i], kShapes[i % std::size(kShapes)], colour});
+    }
+    std::erase_if(styles, [&](const MethodStyle& style) { return !used.contains(style.method); });
+    return styles;
+}
+
+/// Reduction and window always, then whatever has more than one value among the groups.
+std::vector<std::string> varying_parameters(const std::vector<GroupSummary>& groups) {
+    std::map<std::string, std::set<Json>> values;
+    for (const GroupSummary& group : groups) {
+        for (const auto& [key, value] : group.params.items()) values[key].insert(value);
+    }
+    std::vector<std::string> names{"reduction", "window"};
+    const std::set<std::string> apart{"scene", "method", "seed", "reduction", "window"};
+    for (const auto& [key, different] : values) {
+        if (different.size() > 1 && !apart.contains(key)) names.push_back(key);
+    }
+    return names;
+}
+
+int decimals_for(double least, int digits) {
+    if (!(least > 0)) return 3;
+    return std::clamp(digits - 1 - static_cast<int>(std::floor(std::log10(least))), 1, 7);
+}
+
+void set_decimals(ReportData& data) {
+    double least_time = 0;
+    double least_relmse = 0;
+    const auto lower = [](double& least, double value) {
+        if (value > 0 && (least == 0 || value < least)) least = value;
+    };
+    for (const GroupSummary& group : data.groups) {
+        lower(least_time, group.time_s);
+        if (group.relmse) lower(least_relmse, group.relmse->mean);
+    }
+    data.time_decimals = decimals_for(least_time, 3);
+    data.relmse_decimals = decimals_for(least_relmse, 2);
+}
+
+}  // namespace
+
+const MethodStyle& ReportData::style_of(const std::string& method) const {
+    return *std::ranges::find(methods, method, &MethodStyle::method);
+}
+
+ReportData read_report_data(const std::string& directory) {
+    ReportData data;
+    data.directory = directory;
+    read_rows(data);
+    data.run = read_run(directory + "/run.json");
+    data.groups = summarise(data.rows);
+    for (const GroupSummary& group : data.groups) {
+        const bool is_new = std::ranges::find(data.scenes, group.scene) == data.scenes.end();
+        if (is_new) data.scenes.push_back(group.scene);
+    }
+    data.methods = method_styles(data.groups);
+    data.varying = varying_parameters(data.groups);
+    set_decimals(data);
+    return data;
+}
+
+std::string parameter_text(const Json& params, const std::string& name) {
+    const Json value = params.value(name, Json());
+    if (value.is_null()) return "–";
+    if (value.is_string()) return value.get<std::string>();
+    if (!value.is_array()) return value.dump();
+    std::string text;
+    for (const Json& each : value) text += (text.empty() ? "" : " × ") + each.dump();
+    return text;
+}
+
+std::string parameters_text(const ReportData& data, const GroupSummary& group) {
+    std::string text;
+    for (const std::string& name : data.varying) {
+        if (!group.params.contains(name)) continue;
+        text += (text.empty() ? "" : ", ") + name + " " + parameter_text(group.params, name);
+    }
+    return text;
+}
+
+std::string reference_text(const Json& row) {
+    const Json settings = row.value("reference", Json::object());
+    std::string text;
+    for (const char* name : {"spp", "light_sampling", "sampler", "seed"}) {
+        if (!settings.contains(name)) continue;
+        text +=
+            (text.empty() ? "" : ", ") + std::string(name) + " " + parameter_text(settings, name);
+    }
+    return text;
+}
+
+std::string short_name(const GroupSummary& group) {
+    const std::string prefix = group.scene + ".";
+    return group.group.starts_with(prefix) ? group.group.substr(prefix.size()) : group.group;
+}
+
+bool is_identical(const ReportData& data, const GroupSummary& group, const std::string& metric) {
+    if (group.seeds == 0) return false;
+    return std::ranges::all_of(group.cells, [&](const std::string& cell) {
+        const Json& row = data.row_of(cell);
+        return row["status"] != "ok" || row["metrics"].value(metric, Json(0)).is_null();
+    });
+}
+
+}  // namespace vecino

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The pictures of a report: error maps of all cells in one range, written beside the cells' images;
+// and what the page shows of each group, as data: URLs.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/grid.h"
+#include "eval/report_data.h"
+
+namespace vecino {
+
+/// Of one cell of a group. A picture that could not be made is an empty URL.
+struct GroupPictures {
+    std::string cell;
+    std::string image, magnitude, sign;
+};
+
+struct ReportPictures {
+    float magnitude_range = 0;  ///< shared by all cells; 0 if there is no map
+    float sign_range = 0;
+    bool has_non_finite = false;                    ///< in any map
+    std::map<std::string, GroupPictures> by_group;  ///< groups of which a cell has an image
+    std::map<std::string, std::string> references;  ///< URL by the rows' "reference_file"
+    std::map<std::string, Extent> sizes;            ///< of the images of each reference
+};
+
+/// Writes cells/NAME/error.png and error_signed.png of every cell that has an image.
+ReportPictures make_report_pictures(const ReportData& data);
+
+}  // namespace vecino

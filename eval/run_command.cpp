@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+
+#include "eval/commands.h"
+#include "eval/progress.h"
+#include "eval/report.h"
+#include "eval/run_directory.h"
+#include "eval/run_matrix.h"
+#include "eval/summary.h"
+
+namespace vecino {
+namespace {
+
+struct RunArguments {
+    std::string config;
+    std::string directory;
+};
+
+void print_results(const RunArguments& arguments, const std::vector<Cell>& cells) {
+    const auto rows = RunDirectory::open(arguments.directory).rows();
+    std::vector<nlohmann::json> ordered;
+    for (const Cell& cell : cells) {
+        if (rows.contains(cell.name)) ordered.push_back(rows.at(cell.name));
+    }
+    std::printf("%s", summary_table(summarise(ordered)).c_str());
+    for (const nlohmann::json& row : ordered) {
+        if (row["status"] == "ok") continue;
+        std::fprintf(stderr, "failed: %s: %s\n", row["cell"].get<std::string>().c_str(),
+                     row["reason"].get<std::string>().c_str());
+    }
+}
+
+ExitCode run_run(const RunArguments& arguments) {
+    const Matrix matrix = load_matrix(arguments.config);
+    catch_interrupts();
+    const RunSummary summary = run_matrix(matrix, arguments.directory);
+    if (summary.was_interrupted) {
+        std::fprintf(stderr, "interrupted: the same command goes on from here\n");
+        return ExitCode::interrupted;
+    }
+    print_results(arguments, expand(matrix));
+    std::printf("%zu cells, %zu of them from an earlier run, %zu failed\nreport: %s\n",
+                summary.cells, summary.reused, summary.failed,
+                write_report(arguments.directory).c_str());
+    return summary.failed > 0 ? ExitCode::quality : ExitCode::ok;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& chosen) {
+    auto arguments = std::make_shared<RunArguments>();
+    CLI::App* const command = app.add_subcommand("run", "run an evaluation matrix");
+    command->add_option("CONFIG", arguments->config, "matrix (JSON)")->required();
+    command
+        ->add_option("-o", arguments->directory, "run directory; an unfinished run there goes on")
+        ->required();
+    command->callback(
+        [arguments, &chosen] { chosen = [arguments] { return run_run(*arguments); }; });
+}
+
+void add_report_command(CLI::App& app, Action& chosen) {
+    struct Arguments {
+        std::string directory, output;
+    };
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* const command = app.add_subcommand("report", "write the report of a run again");
+    command->add_option("DIR", arguments->directory, "run directory")->required();
+    command->add_option("-o", arguments->output, "HTML file; default: DIR/report.html");
+    command->callback([arguments, &chosen] {
+        chosen = [arguments] {
+            std::printf("report: %s\n",
+                        write_report(arguments->directory, arguments->output).c_str());
+            return ExitCode::ok;
+        };
+    });
+}
+
+std::string number_text(double value, int digits) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return text;
+}
+
+}  // namespace vecino

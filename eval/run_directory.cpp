@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/run_directory.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <utility>
+
+#include "core/error.h"
+#include "core/files.h"
+
+namespace vecino {
+namespace {
+
+void make_folder(const std::string& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error)
+        throw Error(ExitCode::file, path + ": cannot make the directory: " + error.message());
+}
+
+/// Nested objects become dotted names; arrays and texts stay one value.
+void flatten_row(const nlohmann::json& value, const std::string& name,
+                 std::map<std::string, std::string>& out) {
+    if (value.is_object()) {
+        for (const auto& [key, member] : value.items()) {
+            flatten_row(member, name.empty() ? key : name + "." + key, out);
+        }
+    } else if (value.is_string()) {
+        out[name] = value.get<std::string>();
+    } else if (!value.is_null()) {
+        out[name] = value.dump();
+    }
+}
+
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+    return quoted + '"';
+}
+
+std::string csv_text(const std::vector<nlohmann::json>& rows) {
+    std::vector<std::map<std::string, std::string>> flat;
+    std::set<std::string> names;
+    for (const nlohmann::json& row : rows) {
+        flatten_row(row, "", flat.emplace_back());
+        for (const auto& [name, value] : flat.back()) names.insert(name);
+    }
+    names.erase("cell");
+    std::string text = "cell";
+    for (const std::string& name : names) text += "," + csv_field(name);
+    text += "\n";
+    for (auto& row : flat) {
+        text += csv_field(row["cell"]);
+        for (const std::string& name : names) text += "," + csv_field(row[name]);
+        text += "\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+void write_text_file(const std::string& path, const std::string& text) {
+    TemporaryFile file(path);
+    std::ofstream stream(file.path(), std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream) throw Error(ExitCode::file, path + ": cannot be written");
+    file.replace_target();
+}
+
+RunDirectory RunDirectory::create(const std::string& path) {
+    make_folder(path);
+    RunDirectory directory(path);
+    const std::string lock = directory.file(".lock");
+    directory.lock_ = ::open(lock.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
+    if (directory.lock_ < 0) throw Error(ExitCode::file, lock + ": cannot be written");
+    if (flock(directory.lock_, LOCK_EX | LOCK_NB) != 0) {
+        throw Error(ExitCode::file, path + ": another run is writing to this directory");
+    }
+    return directory;
+}
+
+RunDirectory RunDirectory::open(const std::string& path) {
+    RunDirectory directory(path);
+    (void)read_file(directory.file("results.jsonl"));
+    return directory;
+}
+
+RunDirectory::~RunDirectory() {
+    if (lock_ >= 0) ::close(lock_);
+}
+
+RunDirectory::RunDirectory(RunDirectory&& other) noexcept
+    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+
+std::string RunDirectory::file_in(const std::string& folder, const std::string& name) const {
+    make_folder(file(folder));
+    return file(folder + "/" + name);
+}
+
+std::map<std::string, nlohmann::json> RunDirectory::rows() const {
+    std::map<std::string, nlohmann::json> rows;
+    std::ifstream stream(file("results.jsonl"));
+    std::string line;
+    while (std::getline(stream, line)) {
+        const nlohmann::json row = nlohmann::json::parse(line, nullptr, false);
+        if (row.is_object() && row.contains("cell")) rows[row["cell"].get<std::string>()] = row;
+    }
+    return rows;
+}
+
+void RunDirectory::append(const nlohmann::json& row) const {
+    // A killed run may have left half a line: end it, so that this one stands alone.
+    const std::string path = file("results.jsonl");
+    bool ends_line = true;
+    if (std::ifstream before(path, std::ios::binary | std::ios::ate);
+        before && before.tellg() > 0) {
+        before.seekg(-1, std::ios::end);
+        ends_line = before.get() == '\n';
+    }
+    std::ofstream stream(path, std::ios::app | std::ios::binary);
+    stream << (ends_line ? "" : "\n") << row.dump() << "\n";
+    stream.close();
+    if (!stream) throw Error(ExitCode::file, path + ": cannot be written");
+}
+
+void RunDirectory::write_results(const std::vector<nlohmann::json>& rows,
+                                 const nlohmann::json& run) const {
+    std::string lines;
+    for (const nlohmann::json& row : rows) lines += row.dump() + "\n";
+    write_text_file(file("results.jsonl"), lines);
+    write_text_file(file("results.csv"), csv_text(rows));
+    write_text_file(file("run.json"), run.dump(2) + "\n");
+}
+
+}  // namespace vecino

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The options of the schemes: the one table that the command line, matrices, cell names and help
+// follow from.
+#include <algorithm>
+#include <charconv>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/named_values.h"
+#include "filters/schemes.h"
+
+namespace vecino {
+namespace {
+
+constexpr int kMostWindow = 9999;
+constexpr std::string_view kWindowAllowed = "an odd integer from 1 to 9999";
+
+constexpr Named<Weighting> kWeightings[] = {
+    {"proportional", Weighting::proportional},
+    {"inverse", Weighting::inverse},
+    {"gaussian", Weighting::gaussian},
+};
+constexpr Named<Metric> kMetrics[] = {
+    {"euclidean", Metric::euclidean},
+    {"manhattan", Metric::manhattan},
+};
+
+void set_window(SchemeParameters& parameters, const JsonValue& json) {
+    const int window = json.integer(1, kMostWindow);
+    if (window % 2 == 0) json.fail(std::string(kWindowAllowed));
+    parameters.window = window;
+}
+
+/// "w7"
+std::string window_slug(const SchemeParameters& parameters) {
+    std::string slug = "w";
+    slug += std::to_string(parameters.window);
+    return slug;
+}
+
+/// "c0.95": the fewest digits that read back as the same number.
+std::string cosine_slug(const SchemeParameters& parameters) {
+    char digits[32];
+    const auto [end, error] =
+        std::to_chars(std::begin(digits), std::end(digits), parameters.min_normal_cosine);
+    std::string slug = "c";
+    slug.append(digits, end);
+    return slug;
+}
+
+using Parameters = const SchemeParameters&;
+
+const SchemeOption kOptions[] = {
+    {"window", "--window", kWindowAllowed, "side of the neighbourhood, in low-resolution pixels",
+     set_window, window_slug},
+    {"weighting", "--weighting", "proportional, inverse, gaussian",
+     "how the weight of a neighbour follows from its distance",
+     [](SchemeParameters& p, const JsonValue& json) { p.weighting = value_of(kWeightings, json); },
+     [](Parameters p) { return name_of(kWeightings, p.weighting); }},
+    {"metric", "--metric", "euclidean, manhattan", "how distances in the image are measured",
+     [](SchemeParameters& p, const JsonValue& json) { p.metric = value_of(kMetrics, json); },
+     [](Parameters p) { return name_of(kMetrics, p.metric); }},
+    {"min_normal_cosine", "--min-normal-cosine", "a number from -1 to 1",
+     "only neighbours count whose normal has a larger cosine to the centre's",
+     [](SchemeParameters& p, const JsonValue& json) {
+         p.min_normal_cosine = json.real({-1.0, 1.0});
+     },
+     cosine_slug},
+    {"use_centre", "--no-centre", "true or false",
+     "whether a pixel counts among its own neighbours",
+     [](SchemeParameters& p, const JsonValue& json) { p.use_centre = json.boolean(); },
+     [](Parameters p) { return std::string(p.use_centre ? "centre" : "no_centre"); }},
+};
+
+}  // namespace
+
+std::span<const SchemeOption> scheme_options() {
+    return kOptions;
+}
+
+const SchemeOption& find_scheme_option(std::string_view name) {
+    const auto* row = std::ranges::find(kOptions, name, &SchemeOption::name);
+    if (row != std::end(kOptions)) return *row;
+    std::vector<std::string_view> allowed;
+    for (const SchemeOption& option : kOptions) allowed.push_back(option.name);
+    throw Error(ExitCode::usage,
+                "scheme option: found \"" + std::string(name) + "\", allowed: " + join(allowed));
+}
+
+}  // namespace vecino

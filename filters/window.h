@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Weighted averages over windows of a low-res frame: what four of the five schemes do. Here stand
+// the border rule (windows are clipped to the image) and the fallback rule (no sound weights: the
+// pixel's own colour).
+#pragma once
+
+#include <cmath>
+
+#include "filters/schemes.h"
+#include "filters/window_row.h"
+
+namespace vecino {
+
+inline bool is_finite(const glm::vec3& color) {
+    return std::isfinite(color.x) && std::isfinite(color.y) && std::isfinite(color.z);
+}
+
+struct WindowKind {
+    WindowDistance distance;
+    WindowWeight weight;
+};
+
+/// The average for every low-res pixel. Of the parameters it reads window, use_centre and
+/// min_normal_cosine.
+Reconstruction average_windows(const Frame& low, WindowKind kind,
+                               const SchemeParameters& parameters, int threads);
+
+}  // namespace vecino

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "core/files.h"
+#include "core/image_io.h"
+#include "eval/matrix.h"
+#include "eval/run_directory.h"
+#include "eval/run_matrix.h"
+#include "tests/catch.h"
+#include "tests/error_of.h"
+#include "tests/temp_dir.h"
+
+using namespace vecino;
+
+namespace {
+
+const std::string kScenes = std::string(VECINO_SOURCE_DIR) + "/scenes/";
+
+std::string tiny_matrix(const std::string& more = "") {
+    return R"({"name": "tiny", "axes": {"scene": [")" + kScenes +
+           R"(cornell.json"], "scheme": ["nearest", "mean"],
+        "reduction": [2], "window": [3, 5], "seed": [1, 2]})" +
+           more + R"(, "fixed": {"size": [8, 6], "spp": 4, "sampler": "independent"},
+        "reference": {"spp": 64, "light_sampling": "nee", "sampler": "sobol", "seed": 1000}, "measure": {"repeat": 2}})";
+}
+
+Matrix write_and_load(const TempDir& dir, const std::string& text) {
+    const std::string path = dir.path("matrix.json");
+    std::ofstream(path) << text;
+    return load_matrix(path);
+}
+
+std::vector<std::string> names_of(const std::vector<Cell>& cells) {
+    std::vector<std::string> names;
+    for (const Cell& cell : cells) names.push_back(cell.name);
+    return names;
+}
+
+/// Rows without what differs from run to run.
+std::map<std::string, nlohmann::json> lasting(std::map<std::string, nlohmann::json> rows) {
+    for (auto& [name, row] : rows) row.erase("time_s");
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("a matrix expands into named cells, path tracing included, unread axes left out",
+          "[matrix]") {
+    const TempDir dir;
+    const auto cells = expand(write_and_load(dir, tiny_matrix()));
+    const std::vector<std::string> expected = {"cornell.path.s1",       "cornell.nearest.f2.s1",
+                                               "cornell.path.s2",       "cornell.nearest.f2.s2",
+                                               "cornell.mean.f2.w3.s1", "cornell.mean.f2.w3.s2",
+                                               "cornell.mean.f2.w5.s1", "cornell.mean.f2.w5.s2"};
+    auto names = names_of(cells);
+    CHECK(names.size() == expected.size());
+    for (const std::string& name : expected) CHECK(std::ranges::count(names, name) == 1);
+}
+
+TEST_CASE("exclude removes cells, include adds them, budgets are spent", "[matrix]") {
+    const TempDir dir;
+    const auto cells =
+        expand(write_and_load(dir, tiny_matrix(
+                                       R"(, "exclude": [{"scheme": "mean", "window": 5}],
+            "include": [{"scheme": "distance3d_normal", "window": 7, "weighting": "inverse", "budget": "equal_samples", "seed": 1}])")));
+    const auto names = names_of(cells);
+    CHECK(std::ranges::count(names, "cornell.mean.f2.w5.s1") == 0);
+    CHECK(std::ranges::count(names, "cornell.mean.f2.w3.s2") == 1);
+    const std::string added = "cornell.distance3d_normal.f2.w7.inverse.equal_samples.s1";
+    const auto cell = std::ranges::find(cells, added, &Cell::name);
+    REQUIRE(cell != cells.end());
+    CHECK(cell->settings.spp == 16);  // 4 * (8*6) / (4*3)
+    CHECK(cell->samples_ratio == 1.0);
+    CHECK(cell->parameters.weighting == Weighting::inverse);
+    CHECK(std::ranges::find(cells, "cornell.nearest.f2.s1", &Cell::name)->samples_ratio == 0.25);
+}
+
+TEST_CASE("equal samples round where the factor does not divide, and say so", "[matrix]") {
+    const TempDir dir;
+    std::string text = tiny_matrix();
+    text.replace(text.find("[2]"), 3, "[3]");
+    text.replace(text.find("[8, 6]"), 6, "[8, 8]");
+    text.replace(text.find("\"seed\": [1, 2]"), 14, "\"seed\": 1, \"budget\": \"equal_samples\"");
+    const auto cells = expand(write_and_load(dir, text));
+    const auto cell = std::ranges::find(cells, "cornell.nearest.f3.equal_samples.s1", &Cell::name);
+    REQUIRE(cell != cells.end());
+    CHECK(cell->settings.spp == 64);  // 4 * 64 / 4
+    CHECK(cell->samples_ratio == 1.0);
+}
+
+TEST_CASE("a faulty matrix is refused: where, what was found, what is allowed", "[matrix]") {
+    struct Fault {
+        const char* from;
+        const char* to;
+        const char* message;
+    };
+    const Fault fault = GENERATE(values<Fault>({
+        {"\"axes\"", "\"axis\"",
+         "/: found unknown key \"axis\", allowed: name, axes, exclude, include, fixed, reference, "
+         "measure"},
+        {"\"mean\"", "\"meen\"",
+         "/axes/scheme/1: found \"meen\", allowed: nearest, mean, distance2d, distance3d, "
+         "distance3d_normal"},
+        {"[3, 5]", "[3, 4]", "/axes/window/1: found 4, allowed: an odd integer from 1 to 9999"},
+        {"[3, 5]", "[]", "/axes/window: found [], allowed: at least one value"},
+        {"\"spp\": 4", "\"spp\": 0",
+         "/fixed/spp: found 0, allowed: an integer of at least 1"},
+        {"[8, 6]", "[8]",
+         "/fixed/size: found [8], allowed: WxH on the command line, [W, H] in a matrix"},
+        {"\"repeat\": 2", "\"repeat\": 2, \"gates\": 1",
+         "/measure: found unknown key \"gates\", allowed: repeat"},
+        {"\"repeat\": 2", "\"repeat\": 0",
+         "/measure/repeat: found 0, allowed: an integer from 1 to 1000"},
+        {"\"spp\": 64", "\"size\": 64",
+         "/reference: found unknown key \"size\", allowed: spp, light_sampling, sampler, seed"},
+    }));
+    const TempDir dir;
+    std::string text = tiny_matrix();
+    text.replace(text.find(fault.from), std::string(fault.from).size(), fault.to);
+    const Error error = error_of([&] { expand(write_and_load(dir, text)); });
+    CHECK(std::string(error.what()) == dir.path("matrix.json") + ": " + fault.message);
+    CHECK(error.code() == ExitCode::usage);
+}
+
+TEST_CASE("a run leaves a row, an image and an error image per cell", "[matrix]") {
+    const TempDir dir;
+    const Matrix matrix = write_and_load(dir, tiny_matrix());
+    const std::string out = dir.path("out");
+    const RunSummary summary = run_matrix(matrix, out);
+    CHECK(summary.cells == 8);
+    CHECK(summary.reused == 0);
+    CHECK(summary.failed == 0);
+    const auto rows = RunDirectory::open(out).rows();
+    REQUIRE(rows.size() == 8);
+    for (const auto& [name, row] : rows) {
+        CHECK(row["status"] == "ok");
+        CHECK(row["metrics"]["psnr_float_db"].get<double>() > 5.0);
+        CHECK(row["metrics"]["non_finite"]["count"] == 0);
+        CHECK(row["time_s"]["total"].get<double>() > 0.0);
+        CHECK(load_image(out + "/cells/" + name + "/image.exr").size() == Extent{8, 6});
+        CHECK(std::filesystem::exists(out + "/cells/" + name + "/image.png"));
+        CHECK(std::filesystem::exists(out + "/cells/" + name + "/error.exr"));
+        CHECK(
+            std::filesystem::exists(out + "/" + row["reference_file"].get<std::string>() + ".exr"));
+    }
+    const std::string csv = read_file(out + "/results.csv");
+    CHECK(std::ranges::count(csv, '\n') == 9);
+    CHECK(csv.find("metrics.psnr_float_db") != std::string::npos);
+    CHECK(nlohmann::json::parse(read_file(out + "/run.json"))["name"] == "tiny");
+}
+
+TEST_CASE("a second run redoes nothing; a changed matrix redoes what changed", "[matrix]") {
+    const TempDir dir;
+    const Matrix matrix = write_and_load(dir, tiny_matrix());
+    const std::string out = dir.path("out");
+    run_matrix(matrix, out);
+    const auto before = RunDirectory::open(out).rows();
+    CHECK(run_matrix(matrix, out).reused == 8);
+    CHECK(RunDirectory::open(out).rows() == before);
+    std::string text = tiny_matrix();
+    text.replace(text.find("[3, 5]"), 6, "[3, 7]");
+    CHECK(run_matrix(write_and_load(dir, text), out).reused == 6);
+}
+
+TEST_CASE("a run that lost its end goes on, and ends as if it had not", "[matrix]") {
+    const TempDir dir;
+    const Matrix matrix = write_and_load(dir, tiny_matrix());
+    const std::string whole = dir.path("whole");
+    const std::string cut = dir.path("cut");
+    run_matrix(matrix, whole);
+    run_matrix(matrix, cut);
+    std::string lines = read_file(cut + "/results.jsonl");
+    lines.resize(lines.size() * 2 / 3);  // in the middle of a line
+    std::ofstream(cut + "/results.jsonl", std::ios::trunc) << lines;
+    const RunSummary summary = run_matrix(matrix, cut);
+    CHECK(summary.reused > 0);
+    CHECK(summary.reused < 8);
+    CHECK(lasting(RunDirectory::open(cut).rows()) == lasting(RunDirectory::open(whole).rows()));
+}
+
+TEST_CASE("a directory is written by one run at a time, and belongs to one matrix", "[matrix]") {
+    const TempDir dir;
+    const std::string out = dir.path("out");
+    const Matrix matrix = write_and_load(dir, tiny_matrix());
+    {
+        const RunDirectory held = RunDirectory::create(out);
+        const Error error = error_of([&] { run_matrix(matrix, out); });
+        CHECK(std::string(error.what()) == out + ": another run is writing to this directory");
+        CHECK(error.code() == ExitCode::file);
+    }
+    run_matrix(matrix, out);
+    std::string text = tiny_matrix();
+    text.replace(text.find("\"tiny\""), 6, "\"other\"");
+    const Matrix other = write_and_load(dir, text);
+    const Error error = error_of([&] { run_matrix(other, out); });
+    CHECK(std::string(error.what()) ==
+          out + ": found results of the matrix \"tiny\", allowed: \"other\" or an empty directory");
+    CHECK(error.code() == ExitCode::usage);
+}
+
+TEST_CASE("the matrices of the repository expand", "[matrix]") {
+    const auto cells =
+        expand(load_matrix(std::string(VECINO_SOURCE_DIR) + "/configs/thesis-quick.json"));
+    // per scene and seed: path, nearest at 2 factors, 4 schemes at 2 factors and 3 windows, one at
+    // equal samples
+    CHECK(cells.size() == 2 * 4 * (1 + 2 + 4 * 2 * 3 + 1));
+}
