@@ -69,7 +69,7 @@ std::vector<int> simd_widths();
 /// from four independent scramblings, which changes the radiance too and makes it about 2 dB
 /// noisier. No other plane changes another. Throws Error(usage) for settings out of range, with the
 /// name of the setting. Memory: per traced pixel 12 bytes for each three-channel and 4 for each
-/// one-channel plane asked for (at most 96), nothing per sample.
+/// one-channel plane asked for (108 for all), nothing per sample.
 Render render(const Scene& scene, const RenderSettings& settings, const Progress& progress = {});
 
 }  // namespace vecino

@@ -30,7 +30,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
     return()
 endif()
 
-set(source "// Made by cmake/Embed.cmake.\n#include \"${HEADER}\"\n\nnamespace vecino {\n")
+set(source "// Made by eval/embed.cmake.\n#include \"${HEADER}\"\n\nnamespace vecino {\n")
 foreach(pair IN LISTS PAIRS)
     string(REGEX MATCH "^([^=]*)=(.*)$" pair "${pair}")
     set(name ${CMAKE_MATCH_1})

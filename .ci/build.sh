@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# Shared by eval/run and tests/run: installs the packages of cmake/packages.txt that are missing (Debian, Ubuntu), then
+# Shared by eval/run and tests/run: installs the packages of .ci/packages.txt that are missing (Debian, Ubuntu), then
 # configures and builds a preset. Usage: build PRESET TARGET. Needs $root.
 
 missing_packages() {
     local package
-    sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$root/cmake/packages.txt" | while read -r package; do
+    sed -e 's/[[:space:]]*#.*//' -e '/^[[:space:]]*$/d' "$root/.ci/packages.txt" | while read -r package; do
         dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
     done
 }
