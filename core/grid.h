@@ -4,6 +4,7 @@
 // y) has uv = ((x + 0.5) / width, (y + 0.5) / height).
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <string>
@@ -22,6 +23,10 @@ struct Extent {
     }
     friend bool operator==(const Extent&, const Extent&) = default;
 };
+
+inline bool is_finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// "512x256"
 inline std::string size_text(Extent size) {

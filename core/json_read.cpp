@@ -281,6 +281,9 @@ json parse_json_file(const std::string& path) {
 }
 
 json parse_json_text(const std::string& text, const std::string& name) {
+    if (text.empty()) {  // the library words this differently from version to version
+        throw Error(ExitCode::usage, name + ": line 1, column 1: unexpected end of input");
+    }
     DocumentBuilder builder(text, name);
     json::sax_parse(text, &builder);
     return builder.take();

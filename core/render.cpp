@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <mutex>
 #include <string>
 
@@ -159,8 +158,7 @@ class FrameTracer {
         }
         counts.dropped += pixel.dropped();
         store(pixel, first, {x, y}, frame);
-        const glm::vec3 radiance = frame.radiance(x, y);
-        if (!std::isfinite(radiance.x + radiance.y + radiance.z)) ++counts.non_finite;
+        if (!is_finite(frame.radiance(x, y))) ++counts.non_finite;
     }
 
     struct Pixel {

@@ -25,10 +25,6 @@ inline void require_comparable(const Image& test, const Image& reference) {
                                         ": sizes must be equal and not empty");
 }
 
-inline bool is_finite(glm::vec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 /// What a screen is sent: clipped to [0,1], sRGB-encoded, not quantised.
 inline glm::vec3 display_value(glm::vec3 linear) {
     return {srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z)};

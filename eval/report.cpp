@@ -10,7 +10,7 @@
 namespace vecino {
 
 std::string write_report(const std::string& directory, const std::string& output) {
-    const std::string path = output.empty() ? directory + "/report.html" : output;
+    std::string path = output.empty() ? directory + "/report.html" : output;
     const ReportData data = read_report_data(directory);
     write_text_file(path, report_page(data, make_report_pictures(data)));
     return path;

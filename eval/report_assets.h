@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The files of eval/report/ and Chart.js, embedded into the program by cmake/Embed.cmake.
+// The files of eval/report/ and Chart.js, embedded into the program by eval/embed.cmake.
 #pragma once
 
 #include <string_view>

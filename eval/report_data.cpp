@@ -68,7 +68,7 @@ void read_rows(ReportData& data) {
 Json read_run(const std::string& path) {
     // A first run that was killed has results, but no run.json.
     if (!std::filesystem::exists(path)) return Json::object();
-    const Json run = Json::parse(read_file(path), nullptr, false);
+    Json run = Json::parse(read_file(path), nullptr, false);
     if (!run.is_object()) throw Error(ExitCode::file, path + ": is not a JSON object");
     return run;
 }

@@ -47,10 +47,12 @@ std::string marker_html(const MethodStyle& style) {
 std::string legend_html(const ReportData& data) {
     std::string html;
     for (const MethodStyle& style : data.methods) {
-        html += "<button type=\"button\" aria-pressed=\"true\" data-method=\"" +
-                escaped(style.method) + "\">" + marker_html(style) +
-                escaped(style.method == "path" ? "path (plain path tracing)" : style.method) +
-                "</button>\n";
+        html += "<button type=\"button\" aria-pressed=\"true\" data-method=\"";
+        html += escaped(style.method);
+        html += "\">";
+        html += marker_html(style);
+        html += escaped(style.method);
+        html += style.method == "path" ? " (plain path tracing)</button>\n" : "</button>\n";
     }
     return html;
 }

@@ -12,10 +12,6 @@
 
 namespace vecino {
 
-inline bool is_finite(const glm::vec3& color) {
-    return std::isfinite(color.x) && std::isfinite(color.y) && std::isfinite(color.z);
-}
-
 struct WindowKind {
     WindowDistance distance;
     WindowWeight weight;

@@ -21,7 +21,7 @@ namespace vecino {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-enum class Content {
+enum class FrameContent {
     benign,   ///< finite colours, no two hits in one place, no misses
     awkward,  ///< misses, coincident hits and non-finite colours
     hostile,  ///< non-finite positions and normals too
@@ -62,7 +62,7 @@ inline void poison(Frame& frame, int x, int y, Random& random) {
 }
 
 /// All planes that a scheme may read. Normals point one of two ways, give or take a little.
-inline Frame random_frame(Extent size, Content content, unsigned seed = 1) {
+inline Frame random_frame(Extent size, FrameContent content, unsigned seed = 1) {
     Random random(seed);
     Frame frame;
     frame.radiance = Image(size);
@@ -77,8 +77,8 @@ inline Frame random_frame(Extent size, Content content, unsigned seed = 1) {
             const glm::vec3 normal = axis + 0.4f * (random.vector() - 0.5f);
             frame.normal_world(x, y) =
                 normal / std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
-            if (content != Content::benign) spoil(frame, x, y, random);
-            if (content == Content::hostile) poison(frame, x, y, random);
+            if (content != FrameContent::benign) spoil(frame, x, y, random);
+            if (content == FrameContent::hostile) poison(frame, x, y, random);
         }
     }
     return frame;

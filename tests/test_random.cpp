@@ -99,7 +99,8 @@ TEST_CASE("independent numbers fill the unit square evenly", "[random]") {
 TEST_CASE("dimensions, pixels and seeds are not correlated", "[random]") {
     const bool sobol = GENERATE(false, true);
     constexpr std::uint32_t kCount = 1 << 14;
-    // Points are shuffled within their nets, so correlations of Sobol points scatter more widely (1.3 times, measured).
+    // Points are shuffled within their nets, so correlations of Sobol points scatter more widely
+    // (1.3 times, measured).
     const double limit = (sobol ? 8.0 : 5.0) / std::sqrt(static_cast<double>(kCount));
     const TraceTask task = task_with(sobol);
     const auto base = points(task, 100, 2, kCount);

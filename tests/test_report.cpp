@@ -38,11 +38,18 @@ struct TinyRun {
             {"name", kOddName},
             {"axes",
              {{"scene", {kOddScene + ".json"}}, {"scheme", {"nearest", "mean"}}, {"seed", {1, 2}}}},
-            {"fixed", {{"size", {8, 8}}, {"spp", 4}, {"reduction", 2}}},
-            {"reference", {{"spp", 16}, {"seed", 9}}}};
+            {"fixed", {{"size", {8, 8}}, {"spp", 64}, {"reduction", 2}}},
+            {"reference", {{"spp", 256}, {"seed", 9}}}};
         run_matrix(load_matrix(temp.write("tiny.json", matrix.dump())), directory);
     }
 
+    [[nodiscard]] Image image(const std::string& cell_name) const {
+        return load_image(directory + "/cells/" + cell_name + "/image.exr");
+    }
+    [[nodiscard]] Image reference(const ReportData& data) const {
+        return load_image(directory + "/" + data.rows[0]["reference_file"].get<std::string>() +
+                          ".exr");
+    }
     [[nodiscard]] std::string page() const { return read_file(write_report(directory)); }
     [[nodiscard]] std::string cell(const std::string& name) const {
         return directory + "/cells/" + kOddScene + "." + name + "/";
@@ -114,10 +121,9 @@ TEST_CASE("a report goes where it is asked to", "[report]") {
 TEST_CASE("the data in a report are JSON with a record of every group", "[report]") {
     const TinyRun run;
     const nlohmann::json data = embedded_data(run.page());
-    std::vector<std::string> groups;
-    for (const nlohmann::json& group : data["groups"]) groups.push_back(group["group"]);
-    CHECK(groups == std::vector<std::string>{kOddScene + ".path", kOddScene + ".nearest.f2",
-                                             kOddScene + ".mean.f2.w3"});
+    REQUIRE(data["groups"].size() == 3);
+    CHECK(data["groups"][0]["group"] == kOddScene + ".path");
+    CHECK(data["groups"][2]["group"] == kOddScene + ".mean.f2.w3");
     CHECK(data["groups"][1]["seeds"] == 2);
     CHECK(data["groups"][1]["psnr_float_db"]["mean"].get<double>() > 0);
     CHECK(data["scenes"] == nlohmann::json{kOddScene});
@@ -181,47 +187,38 @@ TEST_CASE("every cell with an image gets both error maps, and nothing else", "[r
 TEST_CASE("all error maps share the largest range of any", "[report]") {
     const TinyRun run;
     const ReportData data = read_report_data(run.directory);
-    float magnitude = 0;
-    float sign = 0;
-    std::set<float> different;
+    const Image reference = run.reference(data);
+    std::set<float> magnitudes;
+    std::set<float> signs;
     for (const nlohmann::json& row : data.rows) {
-        const Image reference =
-            load_image(run.directory + "/" + row["reference_file"].get<std::string>() + ".exr");
-        const Image image =
-            load_image(run.directory + "/cells/" + row["cell"].get<std::string>() + "/image.exr");
-        const auto range = [&](ErrorKind kind) {
-            return suggested_range(error_values(image, reference, kind));
-        };
-        magnitude = std::max(magnitude, range(ErrorKind::magnitude));
-        sign = std::max(sign, range(ErrorKind::sign));
-        different.insert(range(ErrorKind::magnitude));
+        const Image image = run.image(row["cell"]);
+        magnitudes.insert(suggested_range(error_values(image, reference, ErrorKind::magnitude)));
+        signs.insert(suggested_range(error_values(image, reference, ErrorKind::sign)));
     }
-    CHECK(different.size() > 1);
+    REQUIRE(magnitudes.size() > 1);
     const ReportPictures pictures = make_report_pictures(data);
-    CHECK(pictures.magnitude_range == magnitude);
-    CHECK(pictures.sign_range == sign);
+    CHECK(pictures.magnitude_range == *magnitudes.rbegin());
+    CHECK(pictures.sign_range == *signs.rbegin());
 }
 
-TEST_CASE("a report shows the bare maps of the first seed of each group", "[report]") {
+TEST_CASE("a report shows the image and the bare maps of the first seed of each group",
+          "[report]") {
     const TinyRun run;
     const ReportData data = read_report_data(run.directory);
     const ReportPictures pictures = make_report_pictures(data);
     REQUIRE(pictures.by_group.size() == 3);
     const GroupPictures& shown = pictures.by_group.at(kOddScene + ".mean.f2.w3");
-    CHECK(shown.cell == kOddScene + ".mean.f2.w3.s1");
+    REQUIRE(shown.cell == kOddScene + ".mean.f2.w3.s1");
     CHECK(shown.image == png_url(read_file(run.cell("mean.f2.w3.s1") + "image.png")));
 
-    const Image image = load_image(run.cell("mean.f2.w3.s1") + "image.exr");
-    const Image reference =
-        load_image(run.directory + "/" +
-                   data.row_of(shown.cell)["reference_file"].get<std::string>() + ".exr");
-    for (const ErrorKind kind : {ErrorKind::magnitude, ErrorKind::sign}) {
-        const bool is_sign = kind == ErrorKind::sign;
-        const float range = is_sign ? pictures.sign_range : pictures.magnitude_range;
-        const std::string file = run.temp.path("map.png");
-        save_raster(error_colours(error_values(image, reference, kind), {kind, range, ""}), file);
-        CHECK((is_sign ? shown.sign : shown.magnitude) == png_url(read_file(file)));
-    }
+    const std::string file = run.temp.path("map.png");
+    const auto map_url = [&](ErrorKind kind, float range) {
+        const auto values = error_values(run.image(shown.cell), run.reference(data), kind);
+        save_raster(error_colours(values, {kind, range, ""}), file);
+        return png_url(read_file(file));
+    };
+    CHECK(shown.magnitude == map_url(ErrorKind::magnitude, pictures.magnitude_range));
+    CHECK(shown.sign == map_url(ErrorKind::sign, pictures.sign_range));
 }
 
 TEST_CASE("a failed cell is listed with its reason and takes no picture's place", "[report]") {
@@ -331,12 +328,11 @@ TEST_CASE("the best value of a scene is bold, in the direction of its metric", "
     const std::string page = page_of({path, mean});
     const std::string path_row = table_row(page, "box.path");
     const std::string mean_row = table_row(page, "box.mean");
-    for (const char* best : {"<b>31.00</b>", "<b>30.00</b>", "<b>0.7500</b>"}) {
-        CHECK(has(path_row, best));
-    }
-    for (const char* best : {"<b>0.12", "<b>0.250</b>", "<b>25.00</b>"}) {
-        CHECK(has(mean_row, best));
-    }
+    const auto has_all = [](const std::string& row, const std::vector<std::string>& parts) {
+        return std::ranges::all_of(parts, [&](const std::string& part) { return has(row, part); });
+    };
+    CHECK(has_all(path_row, {"<b>31.00</b>", "<b>30.00</b>", "<b>0.7500</b>"}));
+    CHECK(has_all(mean_row, {"<b>0.12", "<b>0.250</b>", "<b>25.00</b>"}));
     CHECK(count(path_row, "<b>") == 3);
     CHECK(count(mean_row, "<b>") == 3);
 }

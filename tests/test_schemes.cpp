@@ -345,7 +345,7 @@ TEST_CASE("sizes and windows that make no sense are errors", "[schemes]") {
 }
 
 TEST_CASE("how long the schemes take", "[.][benchmark]") {
-    const Frame low = random_frame({256, 256}, Content::benign);
+    const Frame low = random_frame({256, 256}, FrameContent::benign);
     for (const Scheme& scheme : all_schemes()) {
         for (const SchemeParameters& parameters : parameters_of(scheme, 7)) {
             std::vector<double> seconds;

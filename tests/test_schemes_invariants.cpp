@@ -88,7 +88,7 @@ ColorRange range_around(int x, int y, const Image& colors, int window) {
 }  // namespace
 
 TEST_CASE("a constant image stays constant", "[schemes]") {
-    Frame low = random_frame({31, 14}, Content::awkward);
+    Frame low = random_frame({31, 14}, FrameContent::awkward);
     low.radiance = Image(low.size(), {0.1f, 0.7f, 13.3f});
     const Image constant({71, 43}, {0.1f, 0.7f, 13.3f});
     for_each_cell(GENERATE(3, 7, 99),
@@ -98,14 +98,14 @@ TEST_CASE("a constant image stays constant", "[schemes]") {
 }
 
 TEST_CASE("at its own size and a window of one pixel an image stays as it is", "[schemes]") {
-    const Frame low = random_frame({23, 17}, Content::benign);
+    const Frame low = random_frame({23, 17}, FrameContent::benign);
     for_each_cell(1, [&](const Scheme& scheme, const SchemeParameters& parameters) {
         CHECK(same_bits(rebuild(low, scheme, parameters, low.size()).image, low.radiance));
     });
 }
 
 TEST_CASE("a window can be no larger than the image", "[schemes]") {
-    const Frame low = random_frame({9, 6}, Content::awkward);
+    const Frame low = random_frame({9, 6}, FrameContent::awkward);
     for_each_cell(17, [&](const Scheme& scheme, SchemeParameters parameters) {
         const Image whole = rebuild(low, scheme, parameters, {20, 20}).image;
         parameters.window = 9999;
@@ -115,7 +115,7 @@ TEST_CASE("a window can be no larger than the image", "[schemes]") {
 
 TEST_CASE("colours scaled by a power of two scale the result exactly", "[schemes]") {
     const float factor = GENERATE(16.0f, 0.125f);
-    const Frame low = random_frame({23, 17}, Content::awkward);
+    const Frame low = random_frame({23, 17}, FrameContent::awkward);
     Frame scaled = low;
     scale(scaled.radiance, factor);
     for_each_cell(5, [&](const Scheme& scheme, const SchemeParameters& parameters) {
@@ -128,7 +128,7 @@ TEST_CASE("colours scaled by a power of two scale the result exactly", "[schemes
 }
 
 TEST_CASE("world units do not matter", "[schemes]") {
-    const Frame low = random_frame({23, 17}, Content::awkward);
+    const Frame low = random_frame({23, 17}, FrameContent::awkward);
     Frame scaled = low;
     scale(scaled.position_world, 1024.0f);
     for_each_cell(5, [&](const Scheme& scheme, const SchemeParameters& parameters) {
@@ -140,7 +140,7 @@ TEST_CASE("world units do not matter", "[schemes]") {
 }
 
 TEST_CASE("no value leaves the range of its window", "[schemes]") {
-    Frame low = random_frame({40, 21}, Content::benign);
+    Frame low = random_frame({40, 21}, FrameContent::benign);
     for (glm::vec3& color : low.radiance.values()) color = 1.0e3f * (color - 0.5f);
     const int window = GENERATE(3, 7, 9);
     for_each_cell(window, [&](const Scheme& scheme, const SchemeParameters& parameters) {
@@ -158,7 +158,7 @@ TEST_CASE("no value leaves the range of its window", "[schemes]") {
 TEST_CASE("a non-finite colour is counted once and changes nothing beyond its window",
           "[schemes]") {
     const float bad = GENERATE(values({kNaN, kInfinity, -kInfinity}));
-    const Frame low = random_frame({21, 21}, Content::benign);
+    const Frame low = random_frame({21, 21}, FrameContent::benign);
     Frame broken = low;
     broken.radiance(10, 8).y = bad;
     for_each_cell(5, [&](const Scheme& scheme, const SchemeParameters& parameters) {
@@ -181,7 +181,7 @@ TEST_CASE("a non-finite colour is counted once and changes nothing beyond its wi
 TEST_CASE("the result is finite for every finite input", "[schemes]") {
     const float colors = GENERATE(1.0f, 3.0e38f, -3.0e38f, 1.0e-42f);
     const float positions = GENERATE(1.0f, 3.0e38f, 1.0e-42f);
-    Frame low = random_frame({19, 15}, Content::benign);
+    Frame low = random_frame({19, 15}, FrameContent::benign);
     scale(low.radiance, colors);
     scale(low.position_world, positions);
     for_each_cell(7, [&](const Scheme& scheme, const SchemeParameters& parameters) {
@@ -193,14 +193,14 @@ TEST_CASE("the result is finite for every finite input", "[schemes]") {
 }
 
 TEST_CASE("the result is finite for the most broken input", "[schemes]") {
-    const Frame low = random_frame({40, 33}, Content::hostile, GENERATE(11u, 12u, 13u));
+    const Frame low = random_frame({40, 33}, FrameContent::hostile, GENERATE(11u, 12u, 13u));
     for_each_cell(GENERATE(1, 3, 7), [&](const Scheme& scheme, const SchemeParameters& parameters) {
         CHECK(all_finite(rebuild(low, scheme, parameters, {99, 66}).image));
     });
 }
 
 TEST_CASE("the number of threads does not change a bit", "[schemes]") {
-    const Frame low = random_frame({50, 61}, Content::awkward);
+    const Frame low = random_frame({50, 61}, FrameContent::awkward);
     for_each_cell(5, [&](const Scheme& scheme, const SchemeParameters& parameters) {
         const auto with = [&](int threads) {
             return reconstruct(low, scheme, {{128, 140}, parameters, threads});
@@ -216,7 +216,7 @@ TEST_CASE("the number of threads does not change a bit", "[schemes]") {
 
 TEST_CASE("a mirrored or transposed frame gives the mirrored or transposed image", "[schemes]") {
     // A third of 72: no full-res pixel has its centre on a border of low-res pixels.
-    const Frame low = random_frame({24, 24}, Content::awkward);
+    const Frame low = random_frame({24, 24}, FrameContent::awkward);
     for_each_cell(5, [&](const Scheme& scheme, const SchemeParameters& parameters) {
         const auto commutes = [&](auto from_low, auto from_full) {
             const Frame moved = rearranged(low, from_low);

@@ -53,22 +53,22 @@ TEST_CASE("every scheme agrees with the thesis's algorithms at any size", "[sche
                                                 {{1, 9}, {1, 19}},
                                                 {{9, 1}, {9, 1}},
                                                 {{13, 2}, {29, 7}}}));
-    check_all(random_frame(sizes.low, Content::awkward), 3, sizes.full);
+    check_all(random_frame(sizes.low, FrameContent::awkward), 3, sizes.full);
 }
 
 TEST_CASE("every scheme agrees with the thesis's algorithms at any window", "[schemes]") {
     const int window = GENERATE(1, 3, 5, 7, 9, 15, 31);
-    check_all(random_frame({14, 11}, Content::awkward, 2), window, {14, 11});
+    check_all(random_frame({14, 11}, FrameContent::awkward, 2), window, {14, 11});
 }
 
 TEST_CASE("every scheme agrees with the thesis's algorithms on broken geometry", "[schemes]") {
     const unsigned seed = GENERATE(3u, 4u, 5u);
-    check_all(random_frame({24, 19}, Content::hostile, seed), 5, {24, 19});
+    check_all(random_frame({24, 19}, FrameContent::hostile, seed), 5, {24, 19});
 }
 
 TEST_CASE("the normal gate agrees with the thesis's at any cosine", "[schemes]") {
     const float cosine = GENERATE(-1.0f, -0.5f, 0.0f, 0.9f, 0.99f, 1.0f);
-    const Frame low = random_frame({19, 17}, Content::awkward, 6);
+    const Frame low = random_frame({19, 17}, FrameContent::awkward, 6);
     for (const Scheme& scheme : all_schemes()) {
         if (!scheme.reads("min_normal_cosine")) continue;
         for (SchemeParameters parameters : parameters_of(scheme, 7)) {
@@ -82,7 +82,7 @@ TEST_CASE("values made once per low-res pixel equal those made per pixel, bit fo
           "[schemes]") {
     // At powers of two uv differences are exact, so both forms do the same arithmetic; except for
     // the exponential.
-    const Frame low = random_frame({32, 16}, Content::awkward, 7);
+    const Frame low = random_frame({32, 16}, FrameContent::awkward, 7);
     const Extent size{75, 41};
     for (const Scheme& scheme : all_schemes()) {
         for (const SchemeParameters& parameters : parameters_of(scheme, 7)) {
@@ -97,7 +97,7 @@ TEST_CASE("values made once per low-res pixel equal those made per pixel, bit fo
 
 TEST_CASE("every full-res pixel holds the very value of its corresponding low-res pixel",
           "[schemes]") {
-    const Frame low = random_frame({21, 10}, Content::awkward, 8);
+    const Frame low = random_frame({21, 10}, FrameContent::awkward, 8);
     const Extent size{64, 31};
     for (const Scheme& scheme : all_schemes()) {
         for (const SchemeParameters& parameters : parameters_of(scheme, 5)) {
