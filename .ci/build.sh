@@ -24,13 +24,13 @@ install_packages() {
     $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >&2
 }
 
-build() {
+build() (
     install_packages
-    cd "$root"
+    cd "$root" # presets are read from the working directory
     local log
     log=$(mktemp)
     # Configuring says nothing of interest unless it fails.
     cmake --preset "$1" >"$log" 2>&1 || { cat "$log" >&2; rm -f "$log"; exit 1; }
     rm -f "$log"
     cmake --build --preset "$1" --target "$2" >&2
-}
+)

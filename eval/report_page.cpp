@@ -61,10 +61,10 @@ std::string charts_html(const ReportData& data) {
     std::string html;
     for (const std::string& scene : data.scenes) {
         const std::string name = escaped(scene);
-        html += "<figure><figcaption>" + name +
-                "</figcaption><div class=\"plot\"><canvas role=\"img\" data-scene=\"" + name +
-                "\" aria-label=\"Time against psnr_float_db of every method on " + name +
-                "; the numbers are in the results table.\"></canvas></div></figure>\n";
+        html += "<figure><figcaption>" + name;
+        html += "</figcaption><div class=\"plot\"><canvas role=\"img\" data-scene=\"" + name;
+        html += "\" aria-label=\"Time against psnr_float_db of every method on " + name;
+        html += "; the numbers are in the results table.\"></canvas></div></figure>\n";
     }
     return html;
 }

@@ -15,6 +15,9 @@ namespace {
 struct RunArguments {
     std::string config;
     std::string directory;
+    std::string only;
+    std::string rerun;
+    bool dry_run = false;
 };
 
 void print_results(const RunArguments& arguments, const std::vector<Cell>& cells) {
@@ -31,18 +34,39 @@ void print_results(const RunArguments& arguments, const std::vector<Cell>& cells
     }
 }
 
+ExitCode print_estimate(const Matrix& matrix, const RunArguments& arguments,
+                        const RunOptions& options) {
+    const RunEstimate estimate = estimate_run(matrix, arguments.directory, options);
+    for (const std::string& cell : estimate.cells) std::printf("%s\n", cell.c_str());
+    std::printf("%zu cells to do, %.0f million samples, about %s on this machine\n",
+                estimate.cells.size(), estimate.samples * 1e-6,
+                duration_text(estimate.time_s).c_str());
+    return ExitCode::ok;
+}
+
+void print_counts(const RunSummary& summary) {
+    std::printf("%zu cells: %zu done now, %zu from an earlier run, %zu failed, %zu missing\n",
+                summary.cells, summary.done, summary.kept, summary.failed, summary.missing);
+    if (summary.stale == 0) return;
+    std::fprintf(
+        stderr,
+        "note: %zu results are of another build or another state of their scene: --rerun stale\n",
+        summary.stale);
+}
+
 ExitCode run_run(const RunArguments& arguments) {
+    const RunOptions options{arguments.only, parse_rerun(arguments.rerun)};
     const Matrix matrix = load_matrix(arguments.config);
+    if (arguments.dry_run) return print_estimate(matrix, arguments, options);
     catch_interrupts();
-    const RunSummary summary = run_matrix(matrix, arguments.directory);
+    const RunSummary summary = run_matrix(matrix, arguments.directory, options);
     if (summary.was_interrupted) {
         std::fprintf(stderr, "interrupted: the same command goes on from here\n");
         return ExitCode::interrupted;
     }
     print_results(arguments, expand(matrix));
-    std::printf("%zu cells, %zu of them from an earlier run, %zu failed\nreport: %s\n",
-                summary.cells, summary.reused, summary.failed,
-                write_report(arguments.directory).c_str());
+    print_counts(summary);
+    std::printf("report: %s\n", write_report(arguments.directory).c_str());
     return summary.failed > 0 ? ExitCode::quality : ExitCode::ok;
 }
 
@@ -55,6 +79,12 @@ void add_run_command(CLI::App& app, Action& chosen) {
     command
         ->add_option("-o", arguments->directory, "run directory; an unfinished run there goes on")
         ->required();
+    command->add_option("--only", arguments->only,
+                        "run only cells whose name matches this regular expression");
+    command->add_option("--rerun", arguments->rerun,
+                        "do again: failed, stale (another build or scene file), all");
+    command->add_flag("--dry-run", arguments->dry_run,
+                      "print the cells to do and an estimate of the time");
     command->callback(
         [arguments, &chosen] { chosen = [arguments] { return run_run(*arguments); }; });
 }

@@ -130,13 +130,15 @@ void RunDirectory::append(const nlohmann::json& row) const {
     if (!stream) throw Error(ExitCode::file, path + ": cannot be written");
 }
 
-void RunDirectory::write_results(const std::vector<nlohmann::json>& rows,
-                                 const nlohmann::json& run) const {
+void RunDirectory::write_run(const nlohmann::json& run) const {
+    write_text_file(file("run.json"), run.dump(2) + "\n");
+}
+
+void RunDirectory::write_results(const std::vector<nlohmann::json>& rows) const {
     std::string lines;
     for (const nlohmann::json& row : rows) lines += row.dump() + "\n";
     write_text_file(file("results.jsonl"), lines);
     write_text_file(file("results.csv"), csv_text(rows));
-    write_text_file(file("run.json"), run.dump(2) + "\n");
 }
 
 }  // namespace vecino

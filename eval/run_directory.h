@@ -23,6 +23,9 @@ class RunDirectory {
     /// Opens an existing one for reading. Throws Error(file) if there is no results.jsonl.
     static RunDirectory open(const std::string& path);
 
+    /// A directory that may not be there yet, to look at its rows. Never throws, never writes.
+    static RunDirectory peek(const std::string& path) { return RunDirectory(path); }
+
     ~RunDirectory();
     RunDirectory(RunDirectory&& other) noexcept;
     RunDirectory(const RunDirectory&) = delete;
@@ -39,8 +42,9 @@ class RunDirectory {
     [[nodiscard]] std::map<std::string, nlohmann::json> rows() const;
     void append(const nlohmann::json& row) const;
 
-    /// Writes results.jsonl anew (one row per cell, in this order), results.csv and run.json.
-    void write_results(const std::vector<nlohmann::json>& rows, const nlohmann::json& run) const;
+    void write_run(const nlohmann::json& run) const;  ///< run.json
+    /// Writes results.jsonl anew (one row per cell, in this order) and results.csv.
+    void write_results(const std::vector<nlohmann::json>& rows) const;
 
   private:
     explicit RunDirectory(std::string path) : path_(std::move(path)) {}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/run_matrix.h"
 
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 #include <map>
@@ -53,21 +54,22 @@ struct TimedFrame {
 
 class Runner {
   public:
-    Runner(const Matrix& matrix, const std::string& directory)
-        : matrix_(matrix), directory_(RunDirectory::create(directory)), cells_(expand(matrix)) {
+    Runner(const Matrix& matrix, RunDirectory directory, const RunOptions& options)
+        : matrix_(matrix), directory_(std::move(directory)), cells_(expand(matrix)) {
         const nlohmann::json versions = version_json();
         build_ = versions["build"].get<std::string>();
         run_ = {{"name", matrix.name}, {"config", matrix.document}, {"versions", versions}};
         require_same_matrix();
         for (const Cell& cell : cells_) load_scene_of(cell);
+        old_rows_ = directory_.rows();
+        plan_ = plan_run(cells_, options, [this](const Cell& cell) { return state_of(cell); });
     }
 
     RunSummary run() {
         RunSummary summary;
-        summary.cells = cells_.size();
-        for (const auto& [name, row] : directory_.rows()) old_rows_.emplace(name, row);
+        keep_old_rows(summary);
+        write_run();
         const std::vector<FrameJob> jobs = pending_jobs();
-        summary.reused = rows_.size();
         total_samples_ = planned_samples(jobs);
         ProgressBar bar(matrix_.name);
         bar_ = &bar;
@@ -77,9 +79,28 @@ class Runner {
             if (error.code() != ExitCode::interrupted) throw;
             summary.was_interrupted = true;
         }
-        finish();
-        for (const auto& [name, row] : rows_) summary.failed += row["status"] != "ok" ? 1 : 0;
+        write_results();
+        write_run();
+        count(summary);
         return summary;
+    }
+
+    RunEstimate estimate() {
+        RunEstimate result;
+        const std::vector<FrameJob> jobs = pending_jobs();
+        for (const FrameJob& job : jobs) {
+            for (const Cell* cell : job.cells) result.cells.push_back(cell->name);
+        }
+        result.samples = planned_samples(jobs);
+        std::set<std::string> references;
+        for (const FrameJob& job : jobs) {
+            const Cell& first = *job.cells.front();
+            result.time_s += job.samples() / rate(first.scene, job.settings);
+            const RenderSettings reference = reference_settings(matrix_, first);
+            if (!references.insert(settings_key(first.scene, reference)).second) continue;
+            result.time_s += FrameJob{{}, reference}.samples() / rate(first.scene, reference);
+        }
+        return result;
     }
 
   private:
@@ -101,26 +122,47 @@ class Runner {
         scene_hashes_[cell.scene] = hex(std::hash<std::string>{}(read_file(cell.scene)));
     }
 
-    bool is_finished(const Cell& cell) const {
+    CellState state_of(const Cell& cell) const {
         const auto old = old_rows_.find(cell.name);
-        if (old == old_rows_.end()) return false;
+        if (old == old_rows_.end()) return CellState::missing;
         const nlohmann::json& row = old->second;
-        return row.value("status", "") == "ok" && row.value("build", "") == build_ &&
-               row.value("params", nlohmann::json()) == cell.parameters_json() &&
-               row.value("scene_hash", "") == scene_hashes_.at(cell.scene) &&
-               row.value("reference", nlohmann::json()) == reference_json(cell) &&
-               std::filesystem::exists(directory_.file("cells/" + cell.name + "/image.exr"));
+        const bool same_question =
+            row.value("params", nlohmann::json()) == cell.parameters_json() &&
+            row.value("reference", nlohmann::json()) == reference_json(cell);
+        if (!same_question) return CellState::missing;
+        if (row.value("status", "") != "ok") return CellState::failed;
+        if (!std::filesystem::exists(directory_.file("cells/" + cell.name + "/image.exr")))
+            return CellState::missing;
+        const bool same_program = row.value("build", "") == build_ &&
+                                  row.value("scene_hash", "") == scene_hashes_.at(cell.scene);
+        return same_program ? CellState::finished : CellState::stale;
     }
 
-    /// What is left to do, in the order of the cells; keeps the rows of what is done.
-    std::vector<FrameJob> pending_jobs() {
+    // A row stays until a new one takes its place: an interruption loses nothing.
+    void keep_old_rows(RunSummary& summary) {
+        for (const PlannedCell& planned : plan_) {
+            if (planned.state == CellState::missing) continue;
+            rows_[planned.cell->name] = old_rows_.at(planned.cell->name);
+            if (planned.run) continue;
+            ++summary.kept;
+            summary.stale += planned.state == CellState::stale ? 1 : 0;
+        }
+    }
+
+    void count(RunSummary& summary) const {
+        summary.cells = cells_.size();
+        summary.done = done_cells_;
+        summary.missing = cells_.size() - rows_.size();
+        for (const auto& [name, row] : rows_) summary.failed += row["status"] != "ok" ? 1 : 0;
+    }
+
+    /// What is to do, by frame, in the order of the cells.
+    std::vector<FrameJob> pending_jobs() const {
         std::vector<FrameJob> jobs;
         std::map<std::string, std::size_t> by_key;
-        for (const Cell& cell : cells_) {
-            if (is_finished(cell)) {
-                rows_[cell.name] = old_rows_.at(cell.name);
-                continue;
-            }
+        for (const PlannedCell& planned : plan_) {
+            if (!planned.run) continue;
+            const Cell& cell = *planned.cell;
             const auto [entry, is_new] =
                 by_key.try_emplace(settings_key(cell.scene, cell.settings), jobs.size());
             if (is_new) jobs.push_back({{}, cell.settings});
@@ -130,6 +172,19 @@ class Runner {
             job.cells.push_back(&cell);
         }
         return jobs;
+    }
+
+    /// Samples per second, from a short render of the same kind.
+    double rate(const std::string& scene, RenderSettings settings) {
+        settings.size = {64, 64};
+        settings.reduction = 1;
+        settings.spp = 64;
+        const std::string key = settings_key(scene, settings);
+        const auto known = rates_.find(key);
+        if (known != rates_.end()) return known->second;
+        const RenderStatistics s = render(scenes_.at(scene), settings).statistics;
+        const double measured = static_cast<double>(s.samples) / std::max(s.trace_s, 1e-6);
+        return rates_.emplace(key, measured).first->second;
     }
 
     // Only what some scheme reads is traced and kept.
@@ -243,6 +298,7 @@ class Runner {
         }
         directory_.append(row);
         rows_[cell.name] = row;
+        ++done_cells_;
     }
 
     Reconstruction reconstruct_timed(const Cell& cell, const Frame& low, double& seconds) const {
@@ -291,19 +347,23 @@ class Runner {
         if (!finite) row["reason"] = "non-finite pixels";
     }
 
-    void finish() {
+    void write_results() const {
         std::vector<nlohmann::json> ordered;
         for (const Cell& cell : cells_) {
             const auto row = rows_.find(cell.name);
             if (row != rows_.end()) ordered.push_back(row->second);
         }
+        directory_.write_results(ordered);
+    }
+
+    void write_run() {
         char date[32];
         const std::time_t now = std::time(nullptr);
         std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
         run_["finished_utc"] = date;
         run_["command"] = "vecino run " + matrix_.file;
         run_["cells"] = cells_.size();
-        directory_.write_results(ordered, run_);
+        directory_.write_run(run_);
     }
 
     const Matrix& matrix_;
@@ -315,8 +375,11 @@ class Runner {
     std::map<std::string, nlohmann::json> rows_;
     std::map<std::string, Image> references_;
     std::map<std::string, std::string> reference_files_;
+    std::map<std::string, double> rates_;
+    std::vector<PlannedCell> plan_;
     nlohmann::json run_;
     std::string build_;
+    std::size_t done_cells_ = 0;
     ProgressBar* bar_ = nullptr;
     double total_samples_ = 0;
     double done_samples_ = 0;
@@ -324,8 +387,14 @@ class Runner {
 
 }  // namespace
 
-RunSummary run_matrix(const Matrix& matrix, const std::string& directory) {
-    return Runner(matrix, directory).run();
+RunSummary run_matrix(const Matrix& matrix, const std::string& directory,
+                      const RunOptions& options) {
+    return Runner(matrix, RunDirectory::create(directory), options).run();
+}
+
+RunEstimate estimate_run(const Matrix& matrix, const std::string& directory,
+                         const RunOptions& options) {
+    return Runner(matrix, RunDirectory::peek(directory), options).estimate();
 }
 
 }  // namespace vecino

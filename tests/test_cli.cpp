@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/files.h"
 #include "core/image_io.h"
@@ -167,6 +169,8 @@ TEST_CASE("a mistake is one line on stderr, nothing on stdout, its own exit code
         {"list cells", 64, "CONFIG"},
         {"list colours", 64, "colours"},
         {"run missing.json -o out", 4, "missing.json"},
+        {"run missing.json -o out --rerun some", 64,
+         "--rerun: found \"some\", allowed: failed, stale, all"},
         {"report nowhere", 4, "nowhere"},
     };
     for (const Mistake& mistake : mistakes) {
@@ -200,6 +204,33 @@ TEST_CASE("version and help answer with 0", "[cli]") {
     CHECK(version.out.find("vecino 0.") == 0);
     CHECK(version.out.find("Embree ") != std::string::npos);
     CHECK(run(dir, "render --help").out.find("--light-sampling") != std::string::npos);
+}
+
+TEST_CASE("a run that is killed or interrupted goes on and ends as if it had not been",
+          "[cli][slow]") {
+    const TempDir dir;
+    dir.write("m.json",
+              R"({"name": "m", "axes": {"scene": [")" VECINO_SOURCE_DIR R"(/scenes/cornell.json"],
+        "scheme": ["nearest", "mean"], "reduction": [2, 3], "window": [3], "seed": [1, 2, 3, 4, 5, 6]},
+        "fixed": {"size": [48, 48], "spp": 400}, "reference": {"spp": 256}})");
+    REQUIRE(run(dir, "run m.json -o whole").code == 0);
+    const Outcome stopped = run(dir, "run m.json -o cut & sleep 0.6; kill -INT $!; wait $!");
+    CHECK((stopped.code == 130 || stopped.code == 0));
+    run(dir, "run m.json -o cut & sleep 0.4; kill -KILL $!; wait $!");
+    REQUIRE(run(dir, "run m.json -o cut").code == 0);
+    const auto lasting = [&](const std::string& name) {
+        std::map<std::string, nlohmann::json> rows;
+        std::istringstream lines(read_file(dir.path(name + "/results.jsonl")));
+        for (std::string line; std::getline(lines, line);) {
+            auto row = nlohmann::json::parse(line);
+            row.erase("time_s");
+            rows[row["cell"]] = row;
+        }
+        return rows;
+    };
+    CHECK(lasting("cut").size() == 6 * 5);
+    CHECK(lasting("cut") == lasting("whole"));
+    CHECK(run(dir, "run m.json -o cut --dry-run").out.find("0 cells to do") == 0);
 }
 
 TEST_CASE("the number of threads does not change a file's pixels", "[cli]") {

@@ -129,7 +129,9 @@ TEST_CASE("a run leaves a row, an image and an error image per cell", "[matrix]"
     const std::string out = dir.path("out");
     const RunSummary summary = run_matrix(matrix, out);
     CHECK(summary.cells == 8);
-    CHECK(summary.reused == 0);
+    CHECK(summary.done == 8);
+    CHECK(summary.kept == 0);
+    CHECK(summary.missing == 0);
     CHECK(summary.failed == 0);
     const auto rows = RunDirectory::open(out).rows();
     REQUIRE(rows.size() == 8);
@@ -156,11 +158,13 @@ TEST_CASE("a second run redoes nothing; a changed matrix redoes what changed", "
     const std::string out = dir.path("out");
     run_matrix(matrix, out);
     const auto before = RunDirectory::open(out).rows();
-    CHECK(run_matrix(matrix, out).reused == 8);
+    CHECK(run_matrix(matrix, out).kept == 8);
     CHECK(RunDirectory::open(out).rows() == before);
     std::string text = tiny_matrix();
     text.replace(text.find("[3, 5]"), 6, "[3, 7]");
-    CHECK(run_matrix(write_and_load(dir, text), out).reused == 6);
+    const RunSummary changed = run_matrix(write_and_load(dir, text), out);
+    CHECK(changed.kept == 6);
+    CHECK(changed.done == 2);
 }
 
 TEST_CASE("a run that lost its end goes on, and ends as if it had not", "[matrix]") {
@@ -174,9 +178,59 @@ TEST_CASE("a run that lost its end goes on, and ends as if it had not", "[matrix
     lines.resize(lines.size() * 2 / 3);  // in the middle of a line
     std::ofstream(cut + "/results.jsonl", std::ios::trunc) << lines;
     const RunSummary summary = run_matrix(matrix, cut);
-    CHECK(summary.reused > 0);
-    CHECK(summary.reused < 8);
+    CHECK(summary.kept > 0);
+    CHECK(summary.kept < 8);
     CHECK(lasting(RunDirectory::open(cut).rows()) == lasting(RunDirectory::open(whole).rows()));
+}
+
+TEST_CASE("only the cells that are asked for are run, and the rest stays", "[matrix]") {
+    const TempDir dir;
+    const Matrix matrix = write_and_load(dir, tiny_matrix());
+    const std::string out = dir.path("out");
+    const RunSummary part = run_matrix(matrix, out, {.only = "mean.*w3"});
+    CHECK(part.done == 2);
+    CHECK(part.missing == 6);
+    const RunSummary rest = run_matrix(matrix, out);
+    CHECK(rest.done == 6);
+    CHECK(rest.kept == 2);
+    const Error none = error_of([&] { run_matrix(matrix, out, {.only = "bicubic"}); });
+    CHECK(none.code() == ExitCode::usage);
+    const Error broken = error_of([&] { run_matrix(matrix, out, {.only = "(["}); });
+    CHECK(std::string(broken.what()).find("--only: found \"([\"") != std::string::npos);
+}
+
+TEST_CASE("failed and stale cells are done again when asked, not before", "[matrix]") {
+    const TempDir dir;
+    const Matrix matrix = write_and_load(dir, tiny_matrix());
+    const std::string out = dir.path("out");
+    run_matrix(matrix, out);
+    auto rows = RunDirectory::open(out).rows();
+    rows["cornell.path.s1"]["build"] = "another";
+    rows["cornell.path.s2"]["status"] = "failed";
+    rows["cornell.path.s2"]["reason"] = "a test says so";
+    std::string lines;
+    for (const auto& [name, row] : rows) lines += row.dump() + "\n";
+    std::ofstream(out + "/results.jsonl", std::ios::trunc) << lines;
+    const RunSummary plain = run_matrix(matrix, out);
+    CHECK(plain.done == 0);
+    CHECK(plain.stale == 1);
+    CHECK(plain.failed == 1);
+    const RunSummary failed = run_matrix(matrix, out, {.only = "", .rerun = Rerun::failed});
+    CHECK(failed.done == 1);
+    CHECK(failed.failed == 0);
+    CHECK(run_matrix(matrix, out, {.only = "", .rerun = Rerun::stale}).done == 1);
+    CHECK(run_matrix(matrix, out, {.only = "", .rerun = Rerun::stale}).done == 0);
+    CHECK(run_matrix(matrix, out, {.only = "", .rerun = Rerun::all}).done == 8);
+}
+
+TEST_CASE("an estimate names what is to do and touches nothing", "[matrix]") {
+    const TempDir dir;
+    const Matrix matrix = write_and_load(dir, tiny_matrix());
+    const RunEstimate estimate = estimate_run(matrix, dir.path("out"), {.only = "path"});
+    CHECK(estimate.cells == std::vector<std::string>{"cornell.path.s1", "cornell.path.s2"});
+    CHECK(estimate.samples == 2 * 48 * 4 + 48 * 64);
+    CHECK(estimate.time_s > 0.0);
+    CHECK_FALSE(std::filesystem::exists(dir.path("out")));
 }
 
 TEST_CASE("a directory is written by one run at a time, and belongs to one matrix", "[matrix]") {

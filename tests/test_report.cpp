@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <limits>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -149,8 +148,10 @@ TEST_CASE("a report loads nothing from outside of its file", "[report]") {
     const TinyRun run;
     const std::string page = run.page();
     CHECK(has(page, "content=\"default-src 'none'; img-src data:;"));
-    const std::regex load("\\b(?:src|href)=\"(?!data:|#)");
-    CHECK_FALSE(std::regex_search(page, load));
+    for (const std::string attribute : {"src=\"", "href=\""}) {
+        const std::size_t here = count(page, attribute + "data:") + count(page, attribute + "#");
+        CHECK(count(page, attribute) == here);
+    }
     CHECK_FALSE(has(page, "@import"));
     CHECK_FALSE(has(page, "url("));
     CHECK(has(page, "src=\"data:image/png;base64,iVBORw0KGgo"));
