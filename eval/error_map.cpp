@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/error_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -52,6 +53,12 @@ float suggested_range(const Grid<float>& values) {
     for (const float value : values.values())
         if (std::isfinite(value)) magnitudes.push_back(std::abs(value));
     return magnitudes.empty() ? round_up(0) : round_up(percentile_99(std::move(magnitudes)));
+}
+
+float shared_range(std::vector<float> suggested) {
+    const auto middle = suggested.begin() + static_cast<std::ptrdiff_t>(suggested.size() / 2);
+    std::ranges::nth_element(suggested, middle);
+    return *middle;
 }
 
 Grid<glm::u8vec3> error_colours(const Grid<float>& values, const ErrorPictureStyle& style) {

@@ -7,6 +7,7 @@
 
 #include <glm/vec3.hpp>
 #include <string>
+#include <vector>
 
 #include "core/grid.h"
 
@@ -23,9 +24,13 @@ enum class ErrorKind {
 Grid<float> error_values(const Image& test, const Image& reference, ErrorKind kind);
 
 /// The least "round" number (1, 2, 5 times a power of ten) that is not below the 99th percentile of
-/// |values|, over finite values; at least 0.001. Ranges shared by several maps are the largest of
-/// theirs.
+/// |values|, over finite values; at least 0.001.
 float suggested_range(const Grid<float>& values);
+
+/// The range that several maps share: the (upper) median of their suggested ones, so that one
+/// method that fails does not turn all other maps black. What lies beyond has the colour of the
+/// end. Precondition: not empty.
+float shared_range(std::vector<float> suggested);
 
 struct ErrorPictureStyle {
     ErrorKind kind = ErrorKind::magnitude;

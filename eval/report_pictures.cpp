@@ -119,11 +119,16 @@ ReportPictures make_report_pictures(const ReportData& data) {
     References references;
     std::vector<MapJob> jobs = map_jobs(data, references, pictures);
     for_each_job(jobs, measure);
+    std::vector<float> magnitude_ranges;
+    std::vector<float> sign_ranges;
     for (const MapJob& job : jobs) {
-        pictures.magnitude_range = std::max(pictures.magnitude_range, job.magnitude_range);
-        pictures.sign_range = std::max(pictures.sign_range, job.sign_range);
+        magnitude_ranges.push_back(job.magnitude_range);
+        sign_ranges.push_back(job.sign_range);
         pictures.has_non_finite = pictures.has_non_finite || job.has_non_finite;
     }
+    if (jobs.empty()) return pictures;
+    pictures.magnitude_range = shared_range(magnitude_ranges);
+    pictures.sign_range = shared_range(sign_ranges);
     for_each_job(jobs, [&](const MapJob& job) { draw_maps(job, pictures); });
     return pictures;
 }

@@ -2,7 +2,7 @@
 //
 // A run directory on disk:
 //   run.json  results.jsonl  results.csv  report.html
-//   references/SCENE-HASH.exr   frames/FRAME.exr (low-resolution, with planes)
+//   references/SCENE-HASH.exr .png
 //   cells/CELL/image.exr image.png error.exr error.png error_signed.png
 // One process at a time may write to it. results.jsonl grows by whole lines, so that a killed run
 // loses no finished cell.

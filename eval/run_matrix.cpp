@@ -15,6 +15,7 @@
 #include "eval/commands.h"
 #include "eval/metrics_json.h"
 #include "eval/progress.h"
+#include "eval/reference_store.h"
 #include "eval/run_directory.h"
 
 namespace vecino {
@@ -22,12 +23,6 @@ namespace {
 
 // A stage that takes longer than this averages its own noise, and is timed once.
 constexpr double kRepeatBelow_s = 0.5;
-
-std::string hex(std::size_t hash) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%016zx", hash);
-    return text;
-}
 
 std::string settings_key(const std::string& scene, const RenderSettings& settings) {
     Cell cell;
@@ -119,7 +114,7 @@ class Runner {
     void load_scene_of(const Cell& cell) {
         if (scenes_.contains(cell.scene)) return;
         scenes_.emplace(cell.scene, load_scene(cell.scene));
-        scene_hashes_[cell.scene] = hex(std::hash<std::string>{}(read_file(cell.scene)));
+        scene_hashes_[cell.scene] = text_hash(read_file(cell.scene));
     }
 
     CellState state_of(const Cell& cell) const {
@@ -224,31 +219,15 @@ class Runner {
         return nlohmann::json::parse(settings_key(cell.scene, s));
     }
 
-    const Image& reference_of(const Cell& cell) {
-        const RenderSettings settings = reference_settings(matrix_, cell);
+    const StoredReference& reference_of(const Cell& cell) {
+        RenderSettings settings = reference_settings(matrix_, cell);
         const std::string key =
             settings_key(cell.scene, settings) + scene_hashes_.at(cell.scene) + build_;
-        const auto known = references_.find(key);
-        if (known != references_.end()) return known->second;
-        const std::string name =
-            stem(cell.scene) + "-" + hex(std::hash<std::string>{}(key)).substr(0, 8);
-        const std::string path = directory_.file_in("references", name + ".exr");
-        if (!std::filesystem::exists(path)) {
-            RenderSettings radiance_only = settings;
-            radiance_only.planes = {Plane::radiance};
-            const Render made =
-                render_with_progress(cell.scene, radiance_only, stem(cell.scene) + " reference");
-            save_image(made.frame.radiance, directory_.file_in("references", name + ".png"));
-            save_frame(made.frame, path);
-        }
-        reference_files_[key] = "references/" + name;
-        return references_.emplace(key, load_image(path)).first->second;
-    }
-
-    std::string reference_file_of(const Cell& cell) const {
-        const RenderSettings settings = reference_settings(matrix_, cell);
-        return reference_files_.at(settings_key(cell.scene, settings) +
-                                   scene_hashes_.at(cell.scene) + build_);
+        return references_.get(key, stem(cell.scene), [&] {
+            settings.planes = {Plane::radiance};
+            return render_with_progress(cell.scene, settings, stem(cell.scene) + " reference")
+                .frame.radiance;
+        });
     }
 
     TimedFrame trace(const FrameJob& job) {
@@ -271,12 +250,12 @@ class Runner {
 
     void run_job(const FrameJob& job) {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
-        const Image& reference = reference_of(*job.cells.front());
+        const StoredReference& reference = reference_of(*job.cells.front());
         const TimedFrame traced = trace(job);
         for (const Cell* cell : job.cells) run_cell(*cell, traced, reference);
     }
 
-    void run_cell(const Cell& cell, const TimedFrame& traced, const Image& reference) {
+    void run_cell(const Cell& cell, const TimedFrame& traced, const StoredReference& reference) {
         nlohmann::json row{{"cell", cell.name},
                            {"group", cell.group},
                            {"scene", stem(cell.scene)},
@@ -285,13 +264,13 @@ class Runner {
                            {"params", cell.parameters_json()},
                            {"samples_ratio", cell.samples_ratio},
                            {"reference", reference_json(cell)},
-                           {"reference_file", reference_file_of(cell)},
+                           {"reference_file", reference.file},
                            {"scene_hash", scene_hashes_.at(cell.scene)},
                            {"build", build_},
                            {"host", run_["versions"]["cpu"]},
                            {"threads", traced.statistics.threads}};
         try {
-            measure(cell, traced, reference, row);
+            measure(cell, traced, reference.image, row);
         } catch (const Error& error) {
             row["status"] = "failed";
             row["reason"] = error.what();
@@ -373,8 +352,7 @@ class Runner {
     std::map<std::string, std::string> scene_hashes_;
     std::map<std::string, nlohmann::json> old_rows_;
     std::map<std::string, nlohmann::json> rows_;
-    std::map<std::string, Image> references_;
-    std::map<std::string, std::string> reference_files_;
+    ReferenceStore references_{directory_};
     std::map<std::string, double> rates_;
     std::vector<PlannedCell> plan_;
     nlohmann::json run_;
