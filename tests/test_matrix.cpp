@@ -152,7 +152,7 @@ TEST_CASE("a run leaves a row, an image and an error image per cell", "[matrix]"
     CHECK(nlohmann::json::parse(read_file(out + "/run.json"))["name"] == "tiny");
 }
 
-TEST_CASE("a second run redoes nothing; a changed matrix redoes what changed", "[matrix]") {
+TEST_CASE("a second run redoes nothing, a changed matrix what changed", "[matrix]") {
     const TempDir dir;
     const Matrix matrix = write_and_load(dir, tiny_matrix());
     const std::string out = dir.path("out");

@@ -188,7 +188,7 @@ TEST_CASE("many lamps of all shapes: next-event estimation and chance agree", "[
     CHECK(chi2 / noisy == Approx(1.0).margin(0.3));
 }
 
-TEST_CASE("normals that equal the geometric ones change nothing; others do", "[render]") {
+TEST_CASE("normals that equal the geometric ones change nothing but others do", "[render]") {
     const auto tilted = [](const std::string& normal) {
         return scene_from(R"({
         "camera": {"position": [0, 0, 3], "look_at": [0, 0, 0], "up": [0, 1, 0], "vertical_fov_degrees": 30},
