@@ -30,7 +30,7 @@ struct Outcome {
 Outcome run(const TempDir& dir, const std::string& arguments) {
     const std::string out = dir.path("stdout.txt");
     const std::string err = dir.path("stderr.txt");
-    const std::string command = "cd '" + dir.path(".") + "' && '" VECINO_PROGRAM "' " + arguments +
+    const std::string command = "cd '" + dir.path(".") + "' && exec '" VECINO_PROGRAM "' " + arguments +
                                 " >'" + out + "' 2>'" + err + "'";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
