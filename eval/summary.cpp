@@ -164,17 +164,21 @@ Json summary_json(const GroupSummary& g) {
 std::string summary_table(const std::vector<GroupSummary>& groups) {
     std::size_t width = 4;
     for (const GroupSummary& g : groups) width = std::max(width, g.group.size());
-    char line[256];
-    std::snprintf(line, sizeof line, "%-*s  %8s %6s  %7s  %9s  %9s  %7s\n", static_cast<int>(width),
-                  "cell", "psnr dB", "", "ssim", "relmse", "time s", "share");
-    std::string table = line;
+    // Names may be of any length: only the numbers go through the fixed-size line.
+    const auto padded = [&](std::string name) {
+        name.resize(width, ' ');
+        return name;
+    };
+    char line[128];
+    std::snprintf(line, sizeof line, "  %8s %6s  %7s  %9s  %9s  %7s\n", "psnr dB", "", "ssim",
+                  "relmse", "time s", "share");
+    std::string table = padded("cell") + line;
     for (const GroupSummary& g : groups) {
-        std::snprintf(line, sizeof line, "%-*s  %8s %6s  %7s  %9s  %9.4f  %6.2f%%\n",
-                      static_cast<int>(width), g.group.c_str(),
+        std::snprintf(line, sizeof line, "  %8s %6s  %7s  %9s  %9.4f  %6.2f%%\n",
                       cell_text(g.psnr_float_db, 2).c_str(), interval_text(g.psnr_float_db).c_str(),
                       cell_text(g.ssim, 4).c_str(), cell_text(g.relmse, 6).c_str(), g.time_s,
                       100.0 * g.time_share);
-        table += line;
+        table += padded(g.group) + line;
     }
     return table;
 }
