@@ -2,8 +2,6 @@
 #include "eval/summary.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -13,43 +11,6 @@ namespace vecino {
 namespace {
 
 using Json = nlohmann::json;
-
-// Two-sided 95 % quantiles of Student's t for 1 to 30 degrees of freedom.
-constexpr std::array<double, 30> kStudent95 = {
-    12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
-    2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
-    2.080,  2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
-
-double student95(std::size_t degrees) {
-    return degrees > kStudent95.size() ? 1.96 : kStudent95[degrees - 1];
-}
-
-Estimate estimate(const std::vector<double>& values) {
-    const auto n = static_cast<double>(values.size());
-    Estimate result;
-    for (const double value : values) result.mean += value / n;
-    if (values.size() < 2) return result;
-    double squares = 0;
-    for (const double value : values) squares += (value - result.mean) * (value - result.mean);
-    const double half = student95(values.size() - 1) * std::sqrt(squares / (n - 1) / n);
-    result.low = result.mean - half;
-    result.high = result.mean + half;
-    return result;
-}
-
-/// Decibels are averaged over the mean squared errors that they stand for.
-Estimate estimate_db(const std::vector<double>& values_db) {
-    std::vector<double> mse;
-    for (const double db : values_db) mse.push_back(std::pow(10.0, -0.1 * db));
-    const Estimate linear = estimate(mse);
-    const auto to_db = [](double value) { return -10.0 * std::log10(value); };
-    Estimate result{to_db(linear.mean), {}, {}};
-    if (!linear.low) return result;
-    // A wide interval may reach below an error of 0: its upper end in dB is then open.
-    if (*linear.low > 0) result.high = to_db(*linear.low);
-    result.low = to_db(*linear.high);
-    return result;
-}
 
 std::vector<double> values_of(const std::vector<const Json*>& rows, const char* section,
                               const char* key) {

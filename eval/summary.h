@@ -9,13 +9,9 @@
 #include <string>
 #include <vector>
 
-namespace vecino {
+#include "eval/statistics.h"
 
-/// A mean with its 95 % confidence interval (Student's t); without an interval below 2 values.
-struct Estimate {
-    double mean = 0;
-    std::optional<double> low, high;
-};
+namespace vecino {
 
 struct GroupSummary {
     std::string group;  ///< cell name without seed
