@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "core/image_io.h"
 #include "eval/commands.h"
@@ -50,19 +51,44 @@ std::string non_finite_text(const CompareArguments& arguments, const NonFinite& 
            std::to_string(found.y) + ") channel " + std::to_string(found.channel) + ": not scored";
 }
 
+std::string value_text(const std::optional<double>& value) {
+    return value ? number_text(*value, 5) : "-";
+}
+
+/// A column per region below the metrics of the whole image.
+void print_regions(const PerRegion<RegionMetrics>& regions) {
+    const auto print_row = [&](std::string_view name, auto text_of) {
+        std::printf("%-14s", std::string(name).c_str());
+        for (const RegionInfo& info : kRegions)
+            std::printf(" %12s", text_of(info, regions[region_index(info.region)]).c_str());
+        std::printf("\n");
+    };
+    std::printf("\n");
+    print_row("region", [](const RegionInfo& info, auto&) { return std::string(info.name); });
+    print_row("pixels", [](auto&, const RegionMetrics& r) { return std::to_string(r.pixels); });
+    for (const MetricInfo& metric : all_metrics()) {
+        print_row(metric.name, [&](auto&, const RegionMetrics& r) {
+            return value_text(r.metrics ? metric.value(*r.metrics) : std::nullopt);
+        });
+    }
+    for (const RegionInfo& info : kRegions)
+        std::printf("%s: %s\n", std::string(info.name).c_str(),
+                    std::string(info.definition).c_str());
+}
+
 void print_metrics(const Comparison& comparison) {
     if (!comparison.metrics) return;
     for (const MetricInfo& metric : all_metrics()) {
-        const auto value = metric.value(*comparison.metrics);
         const std::string name(metric.name);
         const std::string formula(metric.formula);
-        std::printf("%-14s %12s   %s\n", name.c_str(), value ? number_text(*value, 5).c_str() : "-",
-                    formula.c_str());
+        std::printf("%-14s %12s   %s\n", name.c_str(),
+                    value_text(metric.value(*comparison.metrics)).c_str(), formula.c_str());
     }
     if (comparison.metrics->identical_8bit) std::printf("the 8-bit images are identical\n");
     if (!comparison.metrics->ssim_reason.empty()) {
         std::printf("no ssim: %s\n", comparison.metrics->ssim_reason.c_str());
     }
+    if (comparison.regions) print_regions(*comparison.regions);
 }
 
 /// Says on stderr which limit failed; true if all hold.
@@ -85,15 +111,35 @@ bool limits_hold(const CompareArguments& arguments, const Metrics& m) {
     return hold;
 }
 
+/// With the planes that regions are made from, if it has them.
+Frame load_reference(const std::string& path) {
+    try {
+        return load_frame(path);
+    } catch (const Error& error) {
+        // Other programs' planes may not be what ours are, and comparing needs radiance alone.
+        Frame frame;
+        frame.radiance = load_image(path);
+        std::fprintf(stderr, "warning: no regions: %s\n", error.what());
+        return frame;
+    }
+}
+
+std::optional<RegionMap> regions_in(const Frame& reference) {
+    if (!has_region_planes(reference)) return std::nullopt;
+    return regions_of(reference);
+}
+
 ExitCode run_compare(const CompareArguments& arguments) {
     require_map_extension(arguments.error_map);
     const Image test = load_image(arguments.test);
-    const Image reference = load_image(arguments.reference);
+    const Frame reference_frame = load_reference(arguments.reference);
+    const Image& reference = reference_frame.radiance;
     if (test.size() != reference.size()) {
         throw Error(ExitCode::mismatch, size_mismatch_text(arguments.test, test.size(),
                                                            arguments.reference, reference.size()));
     }
-    const Comparison comparison = compare(test, reference);
+    const std::optional<RegionMap> regions = regions_in(reference_frame);
+    const Comparison comparison = compare(test, reference, regions ? &*regions : nullptr);
     write_error_map(arguments, test, reference);
     if (arguments.json) {
         std::printf("%s\n", comparison_json(comparison).dump().c_str());
@@ -108,14 +154,26 @@ ExitCode run_compare(const CompareArguments& arguments) {
     return limits_hold(arguments, *comparison.metrics) ? ExitCode::ok : ExitCode::quality;
 }
 
+std::string regions_help() {
+    std::string text = "Regions, the first that fits:";
+    for (const RegionInfo& info : kRegions)
+        text += "\n  " + std::string(info.name) + ": " + std::string(info.definition);
+    return text;
+}
+
 }  // namespace
 
 void add_compare_command(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<CompareArguments>();
     CLI::App* const command =
         app.add_subcommand("compare", "measure how far an image is from its reference");
+    command->footer(regions_help());
     command->add_option("TEST", arguments->test, "image")->required();
-    command->add_option("REFERENCE", arguments->reference, "image of the same size")->required();
+    command
+        ->add_option("REFERENCE", arguments->reference,
+                     "image of the same size; an .exr with the planes emission, albedo, normal and "
+                     "id gives metrics per region, too")
+        ->required();
     command->add_option("--error-map", arguments->error_map,
                         ".png: a picture with a scale; .exr: test - reference, linear");
     command

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -57,23 +58,57 @@ glm::vec3 quantised(glm::vec3 display) {
     return {quantise_8bit(display.x), quantise_8bit(display.y), quantise_8bit(display.z)};
 }
 
-std::optional<double> psnr(const cv::Mat& test, const cv::Mat& reference, double peak) {
-    const double mse =
-        cv::norm(test, reference, cv::NORM_L2SQR) / static_cast<double>(test.total());
+/// Both images in one space: a row per row of pixels, a column per channel value.
+struct Values {
+    cv::Mat test, reference;
+};
+
+/// What is measured in one go: all pixels, or those of a region.
+struct Part {
+    cv::Mat mask;  ///< 8 bit, one value per pixel; empty: all pixels
+    Metrics* metrics;
+};
+
+/// The values of the mask's pixels, in one row. A map with one value per pixel will do, too.
+cv::Mat select(const cv::Mat& values, const cv::Mat& mask) {
+    if (mask.empty()) return values;
+    const int per_pixel = values.cols / mask.cols;
+    cv::Mat selected(1, per_pixel * cv::countNonZero(mask), CV_64F);
+    double* to = selected.ptr<double>();
+    for (int y = 0; y < mask.rows; ++y) {
+        const double* from = values.ptr<double>(y);
+        const std::uint8_t* wanted = mask.ptr<std::uint8_t>(y);
+        for (int x = 0; x < mask.cols; ++x, from += per_pixel)
+            if (wanted[x] != 0) to = std::copy_n(from, per_pixel, to);
+    }
+    return selected;
+}
+
+Values select(const Values& values, const cv::Mat& mask) {
+    return {select(values.test, mask), select(values.reference, mask)};
+}
+
+std::optional<double> psnr(const Values& values, double peak) {
+    const double mse = cv::norm(values.test, values.reference, cv::NORM_L2SQR) /
+                       static_cast<double>(values.test.total());
     if (mse == 0) return std::nullopt;
     return 10 * std::log10(peak * peak / mse);
 }
 
-/// Wang et al. 2004. The border, where the window leaves the image, is cropped before the mean.
-double ssim_of_channel(const cv::Mat& x, const cv::Mat& y) {
+/// Where no window leaves the image.
+cv::Rect ssim_interior(cv::Size image) {
+    return {kSsimBorder, kSsimBorder, image.width - 2 * kSsimBorder,
+            image.height - 2 * kSsimBorder};
+}
+
+/// Wang et al. 2004, without the border where the window leaves the image.
+cv::Mat ssim_map(const cv::Mat& x, const cv::Mat& y) {
     constexpr double c1 = (0.01 * kPeak8bit) * (0.01 * kPeak8bit);
     constexpr double c2 = (0.03 * kPeak8bit) * (0.03 * kPeak8bit);
-    const cv::Rect interior(kSsimBorder, kSsimBorder, x.cols - 2 * kSsimBorder,
-                            x.rows - 2 * kSsimBorder);
     const auto local_mean = [&](const cv::Mat& values) {
         cv::Mat blurred;
         cv::GaussianBlur(values, blurred, {kSsimWindow, kSsimWindow}, kSsimSigma);
-        return cv::Mat(blurred, interior);
+        return cv::Mat(blurred, ssim_interior(x.size()));
     };
     const cv::Mat mean_x = local_mean(x);
     const cv::Mat mean_y = local_mean(y);
@@ -83,49 +118,101 @@ double ssim_of_channel(const cv::Mat& x, const cv::Mat& y) {
     const cv::Mat variances = local_mean(x.mul(x) + y.mul(y)) - mean_squares;
     const cv::Mat numerator = (2 * mean_product + c1).mul(2 * covariance + c2);
     const cv::Mat denominator = (mean_squares + c1).mul(variances + c2);
-    return cv::mean(numerator / denominator)[0];
+    return numerator / denominator;
 }
 
-void measure_ssim(const cv::Mat& test, const cv::Mat& reference, Metrics& metrics) {
-    const cv::Mat x = test.reshape(3);
-    const cv::Mat y = reference.reshape(3);
-    if (x.cols < kSsimWindow || x.rows < kSsimWindow) {
-        metrics.ssim_reason = "image is " + size_text({x.cols, x.rows}) +
-                              ", ssim needs at least 11 pixels in both axes";
-        return;
-    }
-    double sum = 0;
+/// One map per channel; none if the image is smaller than the window.
+std::vector<cv::Mat> ssim_maps(const Values& values) {
+    const cv::Mat x = values.test.reshape(3);
+    const cv::Mat y = values.reference.reshape(3);
+    if (x.cols < kSsimWindow || x.rows < kSsimWindow) return {};
+    std::vector<cv::Mat> maps;
     for (int c = 0; c < 3; ++c) {
         cv::Mat x_channel, y_channel;
         cv::extractChannel(x, x_channel, c);
         cv::extractChannel(y, y_channel, c);
-        sum += ssim_of_channel(x_channel, y_channel);
+        maps.push_back(ssim_map(x_channel, y_channel));
     }
-    metrics.ssim = sum / 3;
+    return maps;
 }
 
-void measure_display(const Image& test, const Image& reference, Metrics& metrics) {
-    const Image test_display = map_pixels(test, display_value);
-    const Image reference_display = map_pixels(reference, display_value);
-    metrics.psnr_float_db =
-        psnr(channel_values(test_display), channel_values(reference_display), 1.0);
+void measure_ssim(const std::vector<cv::Mat>& maps, Extent image, const Part& part) {
+    if (maps.empty()) {
+        part.metrics->ssim_reason =
+            "image is " + size_text(image) + ", ssim needs at least 11 pixels in both axes";
+        return;
+    }
+    const cv::Mat mask = part.mask.empty() ? cv::Mat() : part.mask(ssim_interior(part.mask.size()));
+    if (!mask.empty() && cv::countNonZero(mask) == 0) {
+        part.metrics->ssim_reason = "no pixel is inside of the border of 5 that ssim crops";
+        return;
+    }
+    double sum = 0;
+    for (const cv::Mat& map : maps) sum += cv::mean(select(map, mask))[0];
+    part.metrics->ssim = sum / 3;
+}
 
-    const cv::Mat test_8bit = channel_values(map_pixels(test_display, quantised));
-    const cv::Mat reference_8bit = channel_values(map_pixels(reference_display, quantised));
-    metrics.psnr_db = psnr(test_8bit, reference_8bit, kPeak8bit);
+void measure_display(const Values& values, Metrics& metrics) {
+    metrics.psnr_float_db = psnr(values, 1.0);
+}
+
+void measure_8bit(const Values& values, Metrics& metrics) {
+    metrics.psnr_db = psnr(values, kPeak8bit);
     metrics.identical_8bit = !metrics.psnr_db.has_value();
-    measure_ssim(test_8bit, reference_8bit, metrics);
 }
 
-void measure_linear(const cv::Mat& test, const cv::Mat& reference, Metrics& metrics) {
+void measure_linear(const Values& values, Metrics& metrics) {
     cv::Mat error;
-    cv::absdiff(test, reference, error);
-    const cv::Mat relative = error.mul(error) / (reference.mul(reference) + kRelmseOffset);
+    cv::absdiff(values.test, values.reference, error);
+    const cv::Mat relative =
+        error.mul(error) / (values.reference.mul(values.reference) + kRelmseOffset);
     metrics.relmse = cv::mean(relative)[0];
     metrics.mae = cv::mean(error)[0];
     metrics.max_error = cv::norm(error, cv::NORM_INF);
     metrics.p99_error =
         percentile_99(std::vector<double>(error.begin<double>(), error.end<double>()));
+}
+
+void measure_parts(const Values& values, std::span<const Part> parts,
+                   void (*measure)(const Values&, Metrics&)) {
+    for (const Part& part : parts) measure(select(values, part.mask), *part.metrics);
+}
+
+/// One space after the other: of large images, no more values are held at once than need be.
+void measure(const Image& test, const Image& reference, std::span<const Part> parts) {
+    measure_parts({channel_values(test), channel_values(reference)}, parts, measure_linear);
+    const Image test_display = map_pixels(test, display_value);
+    const Image reference_display = map_pixels(reference, display_value);
+    measure_parts({channel_values(test_display), channel_values(reference_display)}, parts,
+                  measure_display);
+    const Values values_8bit{channel_values(map_pixels(test_display, quantised)),
+                             channel_values(map_pixels(reference_display, quantised))};
+    measure_parts(values_8bit, parts, measure_8bit);
+    const std::vector<cv::Mat> maps = ssim_maps(values_8bit);
+    for (const Part& part : parts) measure_ssim(maps, test.size(), part);
+}
+
+/// The whole image and every region that has a pixel, each with metrics to fill.
+std::vector<Part> parts_of(Comparison& comparison, const RegionMap* regions) {
+    std::vector<Part> parts = {{{}, &comparison.metrics.emplace()}};
+    if (!regions) return parts;
+    const auto [width, height] = regions->size();
+    auto* labels = const_cast<Region*>(regions->values().data());  // cv::Mat knows no const
+    const cv::Mat view(height, width, CV_8U, labels);
+    for (const RegionInfo& info : kRegions) {
+        RegionMetrics& region = (*comparison.regions)[region_index(info.region)];
+        if (region.pixels == 0) continue;
+        const cv::Mat mask = view == static_cast<double>(region_index(info.region));
+        parts.push_back({mask, &region.metrics.emplace()});
+    }
+    return parts;
+}
+
+PerRegion<RegionMetrics> unmeasured(const RegionMap& regions) {
+    const PerRegion<std::size_t> pixels = region_pixels(regions);
+    PerRegion<RegionMetrics> result;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i].pixels = pixels[i];
+    return result;
 }
 
 // clang-format off
@@ -150,14 +237,15 @@ constexpr MetricInfo kMetrics[] = {
 
 }  // namespace
 
-Comparison compare(const Image& test, const Image& reference) {
+Comparison compare(const Image& test, const Image& reference, const RegionMap* regions) {
     require_comparable(test, reference);
-    Comparison comparison{.non_finite = find_non_finite(test, reference), .metrics = {}};
-    if (comparison.non_finite.count > 0) return comparison;
-
-    Metrics& metrics = comparison.metrics.emplace();
-    measure_linear(channel_values(test), channel_values(reference), metrics);
-    measure_display(test, reference, metrics);
+    Comparison comparison{
+        .non_finite = find_non_finite(test, reference), .metrics = {}, .regions = {}};
+    if (regions) {
+        require_size(*regions, test.size());
+        comparison.regions = unmeasured(*regions);
+    }
+    if (comparison.non_finite.count == 0) measure(test, reference, parts_of(comparison, regions));
     return comparison;
 }
 

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/grid.h"
+#include "eval/regions.h"
 
 namespace vecino {
 
@@ -34,13 +35,22 @@ struct NonFinite {
     int x = 0, y = 0, channel = 0;
 };
 
-struct Comparison {
-    NonFinite non_finite;
-    std::optional<Metrics> metrics;  ///< none when non_finite.count > 0
+/// Over the pixels of a region alone. The windows of ssim reach beyond it: its ssim is the mean of
+/// the whole image's ssim map over those pixels of the region that the crop of the border leaves.
+struct RegionMetrics {
+    std::size_t pixels = 0;
+    std::optional<Metrics> metrics;  ///< none without pixels, or when non_finite.count > 0
 };
 
-/// Compares linear RGB images. Throws Error(mismatch) when the sizes differ, naming both.
-Comparison compare(const Image& test, const Image& reference);
+struct Comparison {
+    NonFinite non_finite;
+    std::optional<Metrics> metrics;                   ///< none when non_finite.count > 0
+    std::optional<PerRegion<RegionMetrics>> regions;  ///< none: no regions were given
+};
+
+/// Compares linear RGB images, whole and, if regions are given, region by region. Throws
+/// Error(mismatch) when the sizes differ, naming both.
+Comparison compare(const Image& test, const Image& reference, const RegionMap* regions = nullptr);
 
 struct MetricInfo {
     std::string_view name;     ///< key in results and --json

@@ -17,17 +17,25 @@ nlohmann::json metrics_json(const Metrics& metrics) {
     return json;
 }
 
+nlohmann::json metrics_json(const std::optional<Metrics>& metrics) {
+    if (metrics) return metrics_json(*metrics);
+    nlohmann::json json{{"identical_8bit", false}};
+    for (const MetricInfo& metric : all_metrics()) json[std::string(metric.name)] = nullptr;
+    return json;
+}
+
 nlohmann::json comparison_json(const Comparison& comparison) {
-    nlohmann::json json;
-    if (comparison.metrics) {
-        json = metrics_json(*comparison.metrics);
-    } else {
-        for (const MetricInfo& metric : all_metrics()) json[std::string(metric.name)] = nullptr;
-        json["identical_8bit"] = false;
-    }
+    nlohmann::json json = metrics_json(comparison.metrics);
     const NonFinite& found = comparison.non_finite;
     json["non_finite"] = {{"count", found.count}, {"first", nullptr}};
     if (found.count > 0) json["non_finite"]["first"] = {found.x, found.y, found.channel};
+    if (!comparison.regions) return json;
+    for (const RegionInfo& info : kRegions) {
+        const RegionMetrics& region = (*comparison.regions)[region_index(info.region)];
+        nlohmann::json& entry = json["regions"][std::string(info.name)];
+        entry = metrics_json(region.metrics);
+        entry["pixels"] = region.pixels;
+    }
     return json;
 }
 

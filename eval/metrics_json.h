@@ -5,12 +5,19 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "eval/metrics.h"
 
 namespace vecino {
 
 nlohmann::json metrics_json(const Metrics& metrics);
+
+/// Nulls for none.
+nlohmann::json metrics_json(const std::optional<Metrics>& metrics);
+
+/// The metrics, "non_finite", and if there are regions "regions": {"emitter": {"pixels":, and the
+/// metrics}, ...}.
 nlohmann::json comparison_json(const Comparison& comparison);
 
 /// test - reference, linear. Precondition: equal sizes.

@@ -3,6 +3,8 @@
 // The program as a script sees it: exit codes, what stands on stdout, one line per error.
 #include <sys/wait.h>
 
+#include <OpenImageIO/imageio.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +18,7 @@
 #include "core/image_io.h"
 #include "core/planes.h"
 #include "tests/catch.h"
+#include "tests/region_frames.h"
 #include "tests/temp_dir.h"
 
 using namespace vecino;
@@ -30,8 +33,8 @@ struct Outcome {
 Outcome run(const TempDir& dir, const std::string& arguments) {
     const std::string out = dir.path("stdout.txt");
     const std::string err = dir.path("stderr.txt");
-    const std::string command = "cd '" + dir.path(".") + "' && exec '" VECINO_PROGRAM "' " + arguments +
-                                " >'" + out + "' 2>'" + err + "'";
+    const std::string command = "cd '" + dir.path(".") + "' && exec '" VECINO_PROGRAM "' " +
+                                arguments + " >'" + out + "' 2>'" + err + "'";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
 }
@@ -122,6 +125,47 @@ TEST_CASE("a non-finite pixel is reported and never scored", "[cli]") {
     CHECK(mean.code == 0);
     CHECK(nlohmann::json::parse(mean.out)["dropped_samples"] == 2);
     CHECK(mean.err.find("warning: bad.exr: 2 low-res pixels are not finite") == 0);
+}
+
+TEST_CASE("a reference with first hits gives metrics per region", "[cli]") {
+    const TempDir dir;
+    Frame frame = flat_frame({32, 32});
+    frame.radiance = noise({32, 32}, 1.0f);
+    frame.object_id(16, 16) = 1;
+    save_frame(frame, dir.path("planes.exr"));
+    save_image(frame.radiance, dir.path("plain.exr"));
+    save_image(noise({32, 32}, 0.9f), dir.path("test.png"));
+    const Outcome text = run(dir, "compare test.png planes.exr");
+    CHECK(text.out.find("region              emitter         edge     interior\n") !=
+          std::string::npos);
+    CHECK(text.out.find("pixels                    0           25          999\n") !=
+          std::string::npos);
+    const auto json = nlohmann::json::parse(run(dir, "compare test.png planes.exr --json").out);
+    CHECK(json["regions"]["edge"]["pixels"] == 25);
+    CHECK(json["regions"]["edge"]["ssim"].is_number());
+    CHECK(json["regions"]["emitter"]["ssim"].is_null());
+    auto plain = nlohmann::json::parse(run(dir, "compare planes.exr plain.exr --json").out);
+    CHECK_FALSE(plain.contains("regions"));
+    CHECK(plain["identical_8bit"] == true);
+    CHECK(run(dir, "compare test.png plain.exr").out.find("region") == std::string::npos);
+    CHECK(run(dir, "compare --help").out.find("emitter: within width/32 px") != std::string::npos);
+}
+
+TEST_CASE("planes that cannot be read cost a comparison its regions only", "[cli]") {
+    const TempDir dir;
+    const OIIO::ImageSpec spec = [] {
+        OIIO::ImageSpec s(12, 12, 4, OIIO::TypeDesc::FLOAT);
+        s.channelnames = {"R", "G", "B", "N.X"};
+        return s;
+    }();
+    const auto output = OIIO::ImageOutput::create(dir.path("part.exr"));
+    REQUIRE(output->open(dir.path("part.exr"), spec));
+    REQUIRE(output->write_image(spec.format, std::vector<float>(12 * 12 * 4, 0.5f).data()));
+    REQUIRE(output->close());
+    const Outcome outcome = run(dir, "compare part.exr part.exr --json");
+    CHECK(outcome.code == 0);
+    CHECK(nlohmann::json::parse(outcome.out)["mae"] == 0.0);
+    CHECK(outcome.err.find("warning: no regions: part.exr: ") == 0);
 }
 
 TEST_CASE("a mistake is one line on stderr, nothing on stdout, its own exit code, and no file",
