@@ -13,7 +13,8 @@ namespace vecino {
 /// sRGB-encoded), the space of psnr_float_db, and then decoded: there it is the least-squares
 /// optimum, so no image that is constant per low-res pixel has a higher psnr_float_db - of the
 /// whole image without regions, of each region with them. (A box filter in linear light can be
-/// beaten.) Linear RGB in [0,1], of the reference's size.
+/// beaten.) Linear RGB in [0,1], of the reference's size; with low of that size too, the clipped
+/// reference up to rounding.
 ///
 /// Throws Error(mismatch) if low is empty or larger than the reference on an axis, or if the
 /// regions are not of the reference's size; Error(non_finite) if the reference has a value that is
