@@ -32,11 +32,15 @@ struct SeedStatistics {
     // tells how sure those are. Empty below 3 seeds, or without pixels.
     std::vector<double> noise_by_seed;  ///< n noise - (n - 1) (noise without seed i)
     std::vector<double> bias2_by_seed;  ///< mse_i - noise_by_seed_i
+
+    friend bool operator==(const SeedStatistics&, const SeedStatistics&) = default;
 };
 
 struct SeedStatisticsByRegion {
     SeedStatistics whole;
     std::optional<PerRegion<SeedStatistics>> regions;  ///< none: no regions were given
+
+    friend bool operator==(const SeedStatisticsByRegion&, const SeedStatisticsByRegion&) = default;
 };
 
 /// Of linear RGB images, one per seed. None when there is no image, or when a value of an image or
@@ -50,7 +54,8 @@ std::optional<SeedStatisticsByRegion> seed_statistics(std::span<const Image> ima
 /// null for none; with regions also "regions": {"emitter": {the same}, ...}.
 nlohmann::json seed_statistics_json(const SeedStatisticsByRegion& statistics);
 
-/// Reads what seed_statistics_json made, exactly. Throws Error(usage) for anything else.
+/// Reads what seed_statistics_json made, bit for bit; other keys play no part. Throws Error(usage)
+/// naming what is missing or of another type.
 SeedStatisticsByRegion read_seed_statistics(const JsonValue& json);
 
 }  // namespace vecino
