@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// The one exception type of vecino. It carries the program's exit code, so that a failure deep in a
-// library and the code a script sees are the same fact. A message is one line: where, what was
-// found, what is allowed.
+
+/// @file
+/// The one exception type of vecino. It carries the program's exit code, so that a failure deep in
+/// a library and the code a script sees are the same fact. A message is one line: where, what was
+/// found, what is allowed.
 #pragma once
 
 #include <stdexcept>
@@ -12,7 +13,7 @@ namespace vecino {
 
 /// Exit codes of the program. Where several apply: usage, then file, mismatch, non_finite, quality.
 enum class ExitCode : int {
-    ok = 0,
+    ok = 0,             ///< success, and every limit holds
     quality = 2,        ///< a quality limit failed, or cells of a run failed
     mismatch = 3,       ///< sizes, channels or planes do not fit together
     file = 4,           ///< a file cannot be read, decoded or written
@@ -22,9 +23,13 @@ enum class ExitCode : int {
     interrupted = 130,  ///< SIGINT or SIGTERM; state is kept
 };
 
+/// What functions of vecino throw when they cannot do what was asked. Where memory runs out it is
+/// std::bad_alloc, and what Embree refuses is a plain std::runtime_error.
 class Error : public std::runtime_error {
   public:
+    /// The message is one line: where, what was found, what is allowed.
     Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    /// What kind of failure this is, and what the program exits with.
     [[nodiscard]] ExitCode code() const noexcept { return code_; }
 
   private:

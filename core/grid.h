@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Two-dimensional arrays of values. Row 0 is on top, rows are contiguous. The centre of pixel (x,
-// y) has uv = ((x + 0.5) / width, (y + 0.5) / height).
+
+/// @file
+/// Two-dimensional arrays of values. Row 0 is on top, rows are contiguous. The centre of pixel (x,
+/// y) has uv = ((x + 0.5) / width, (y + 0.5) / height).
 #pragma once
 
 #include <cmath>
@@ -15,15 +16,18 @@ namespace vecino {
 
 /// Width and height in pixels.
 struct Extent {
-    int width = 0;
-    int height = 0;
+    int width = 0;   ///< columns, >= 0
+    int height = 0;  ///< rows, >= 0
 
+    /// Number of pixels.
     [[nodiscard]] std::size_t area() const {
         return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     }
+    /// Whether both sides are equal.
     friend bool operator==(const Extent&, const Extent&) = default;
 };
 
+/// Whether no component is NaN or infinite.
 inline bool is_finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -43,19 +47,28 @@ constexpr Extent reduced(Extent full, int factor) {
 template <class T>
 class Grid {
   public:
+    /// 0 x 0.
     Grid() = default;
+    /// Every pixel has the value fill. Precondition: width and height are at least 0.
     explicit Grid(Extent size, T fill = T{}) : size_(size), values_(size.area(), fill) {}
 
+    /// Width and height in pixels.
     [[nodiscard]] Extent size() const { return size_; }
+    /// Whether there is no pixel.
     [[nodiscard]] bool empty() const { return values_.empty(); }
 
-    /// Precondition: 0 <= x < width and 0 <= y < height.
+    /// The value of a pixel, to change. Precondition: 0 <= x < width and 0 <= y < height.
     T& operator()(int x, int y) { return values_[index(x, y)]; }
+    /// The value of a pixel. Precondition: 0 <= x < width and 0 <= y < height.
     const T& operator()(int x, int y) const { return values_[index(x, y)]; }
 
+    /// All values, row by row from the top: pixel (x, y) is number y * width + x. To change, but
+    /// not to resize.
     std::vector<T>& values() { return values_; }
+    /// All values, row by row from the top: pixel (x, y) is number y * width + x.
     [[nodiscard]] const std::vector<T>& values() const { return values_; }
 
+    /// Whether sizes and values are equal; a NaN equals nothing.
     friend bool operator==(const Grid&, const Grid&) = default;
 
   private:
@@ -68,7 +81,7 @@ class Grid {
     std::vector<T> values_;
 };
 
-/// Linear RGB.
+/// Linear RGB. A radiance has no upper bound; what a screen shows lies in [0, 1].
 using Image = Grid<glm::vec3>;
 
 }  // namespace vecino

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Image files, through OpenImageIO (which appears nowhere else). A file is written under a
-// temporary name and renamed: whole or not at all. By extension:
-//   .exr             32-bit float, every plane of a frame (channel names: core/planes.h), linear
-//   .hdr .tif .tiff  radiance only, linear float (.hdr is RGBE)
-//   .png .bmp        radiance only, clipped to [0,1], sRGB-encoded, 8 bit
+
+/// @file
+/// Image files, through OpenImageIO (which appears nowhere else). A file is written under a
+/// temporary name and renamed: whole or not at all. By extension:
+/// - `.exr`: every plane of a frame (channel names: core/planes.h), linear 32-bit float
+/// - `.hdr` `.tif` `.tiff`: radiance only, linear float (`.hdr` is RGBE)
+/// - `.png` `.bmp`: radiance only, clipped to [0,1], sRGB-encoded, 8 bit
 #pragma once
 
 #include <cstdint>
@@ -16,19 +17,22 @@
 
 namespace vecino {
 
-/// Attributes of an EXR file beside its planes: "scene", "spp", "seed", ...
+/// Attributes of an EXR file beside its planes, by name: "scene", "spp", "seed", ...
 using Metadata = std::map<std::string, std::variant<int, float, std::string>>;
 
-/// Writes a frame. Throws Error(file) when it cannot be written or the extension is none of the
-/// above, and Error(non_finite) for a non-finite pixel bound for an 8-bit or RGBE file, which could
-/// not show it.
+/// Writes a frame: the planes that it holds to .exr, radiance alone to other files, which also have
+/// no place for metadata. Throws Error(file) when it cannot be written or the extension is none of
+/// the above, Error(mismatch) if it has no pixels, more than 2^31 - 1, or planes of several sizes,
+/// and Error(non_finite) for a non-finite pixel bound for an 8-bit or RGBE file, which could not
+/// show it.
 void save_frame(const Frame& frame, const std::string& path, const Metadata& metadata = {});
 
-/// Writes radiance alone.
+/// Writes radiance alone. Throws as save_frame() does.
 void save_image(const Image& image, const std::string& path);
 
 /// Writes 8-bit RGB values as they are (already encoded) to .png or .bmp: pictures such as error
-/// maps.
+/// maps. Throws Error(file) for other extensions or when it cannot be written, Error(mismatch) if
+/// there are no pixels.
 void save_raster(const Grid<glm::u8vec3>& raster, const std::string& path);
 
 /// The formats that can be written, for help and errors: ".exr, .hdr, ...".
@@ -44,10 +48,10 @@ void require_writable_extension(const std::string& path);
 /// only some channels of a plane, and Error(non_finite) if an object id is no 32-bit integer.
 Frame load_frame(const std::string& path);
 
-/// Reads radiance alone.
+/// Reads radiance alone. Throws as load_frame() does.
 Image load_image(const std::string& path);
 
-/// "2.4.7"
+/// Of OpenImageIO: "2.4.7".
 std::string image_library_version();
 
 }  // namespace vecino

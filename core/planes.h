@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// The names of the planes: in --planes lists, and as channels of an EXR file. The one table that
-// ties a name to a member of Frame; reading, writing, help and errors all follow from it.
+
+/// @file
+/// The names of the planes: in `--planes` lists, and as channels of an EXR file. The one table that
+/// ties a name to a member of Frame; reading, writing, help and errors all follow from it.
 #pragma once
 
 #include <array>
@@ -15,35 +16,42 @@
 
 namespace vecino {
 
+/// The planes of a Frame, each by the name that `--planes` has for it.
 enum class Plane : unsigned {
-    radiance,
-    direct,
-    indirect,
-    emission,
-    albedo,
-    position,
-    normal,
-    distance,
-    id,
-    count,
-    variance,
+    radiance,  ///< Frame::radiance
+    direct,    ///< Frame::direct
+    indirect,  ///< Frame::indirect
+    emission,  ///< Frame::emission
+    albedo,    ///< Frame::albedo
+    position,  ///< Frame::position_world
+    normal,    ///< Frame::normal_world
+    distance,  ///< Frame::distance_world
+    id,        ///< Frame::object_id
+    count,     ///< Frame::sample_count
+    variance,  ///< Frame::variance
 };
 
 /// A set of planes.
 class Planes {
   public:
+    /// None.
     constexpr Planes() = default;
+    /// Those listed.
     constexpr Planes(std::initializer_list<Plane> planes) {
         for (const Plane plane : planes) bits_ |= bit(plane);
     }
+    /// Whether the plane is in the set.
     [[nodiscard]] constexpr bool has(Plane plane) const { return (bits_ & bit(plane)) != 0; }
+    /// Puts the plane into the set, if it is not there.
     constexpr void add(Plane plane) { bits_ |= bit(plane); }
+    /// Every plane that there is.
     static constexpr Planes all() {
         Planes planes;
         for (unsigned i = 0; i <= static_cast<unsigned>(Plane::variance); ++i)
             planes.bits_ |= 1u << i;
         return planes;
     }
+    /// Whether both hold the same planes.
     friend constexpr bool operator==(const Planes&, const Planes&) = default;
 
   private:
@@ -55,12 +63,14 @@ class Planes {
 using PlaneMember =
     std::variant<Grid<glm::vec3> Frame::*, Grid<float> Frame::*, Grid<std::int32_t> Frame::*>;
 
+/// A row of the table of planes.
 struct PlaneInfo {
-    Plane plane;
-    std::string_view name;                     ///< in --planes and in errors
+    Plane plane;                               ///< what the row is about
+    std::string_view name;                     ///< in `--planes` and in errors
     std::array<std::string_view, 3> channels;  ///< in EXR files; unused entries are empty
-    PlaneMember member;
+    PlaneMember member;                        ///< where a Frame holds it
 
+    /// Channels in EXR files: 1 or 3.
     [[nodiscard]] std::size_t channel_count() const { return channels[1].empty() ? 1 : 3; }
 };
 

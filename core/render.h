@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Path tracing: from a scene to a frame. The result depends on the scene and the settings, never on
-// the number of threads or the order in which pixels are traced.
+
+/// @file
+/// Path tracing: from a scene to a frame. The result depends on the scene and the settings, never
+/// on the number of threads or the order in which pixels are traced.
 #pragma once
 
 #include <cstdint>
@@ -11,51 +12,59 @@
 #include "core/planes.h"
 #include "core/scene.h"
 
+/// All of the library: load_scene(), render(), reconstruct(), save_image(), and what they work on.
 namespace vecino {
 
+/// How a path finds light.
 enum class LightSampling {
     none,  ///< a path finds a light only by chance (the thesis's path tracing)
     nee,   ///< next-event estimation: one shadow ray per surface
 };
 
+/// Where the random numbers of a path come from.
 enum class Sampler {
-    independent,
-    sobol,  ///< Owen-scrambled
+    independent,  ///< hashes: pcg4d (Jarzynski and Olano, JCGT 2020)
+    sobol,        ///< Owen-scrambled Sobol points (Burley, JCGT 2020)
 };
 
+/// Which ray of a pixel the planes of the first hit come from.
 enum class FirstHit {
     first_sample,  ///< of the pixel's first, jittered, sample (the thesis's)
     centre,        ///< along the ray through the pixel centre
 };
 
+/// What decides a render beside its scene. The number of threads does not change a bit of it;
+/// another simd_width may, by rounding.
 struct RenderSettings {
-    Extent size{512, 512};  ///< full resolution; fixes the camera's aspect ratio
-    int reduction = 1;      ///< the traced frame is reduced(size, reduction)
+    Extent size{512, 512};  ///< full resolution, sides 1 to 65536; fixes the camera's aspect ratio
+    int reduction = 1;      ///< >= 1: the traced frame is reduced(size, reduction)
     int spp = 64;           ///< samples (paths) per traced pixel, >= 1
-    int max_depth = 2;      ///< surface bounces that may carry light, >= 0
-    LightSampling light_sampling = LightSampling::nee;
-    Sampler sampler = Sampler::sobol;
-    FirstHit first_hit = FirstHit::first_sample;
-    std::uint32_t seed = 1;
-    Planes planes = Planes::all();  ///< beside radiance, which is always made
-    int threads = 0;                ///< 0: all
+    int max_depth = 2;      ///< surface bounces that may carry light, 0 to 1000
+    LightSampling light_sampling = LightSampling::nee;  ///< how a path finds light
+    Sampler sampler = Sampler::sobol;                   ///< where random numbers come from
+    FirstHit first_hit = FirstHit::first_sample;  ///< which ray the first-hit planes come from
+    std::uint32_t seed = 1;                       ///< any; renders of other seeds differ in noise
+    Planes planes = Planes::all();                ///< beside radiance, which is always made
+    int threads = 0;                              ///< 1 to 1024; 0: all
     int simd_width = 0;  ///< samples traced side by side: 4, 8 or 16; 0: the machine's widest
 };
 
+/// What a render took.
 struct RenderStatistics {
-    double scene_s = 0;  ///< building the acceleration structure
-    double trace_s = 0;
-    std::uint64_t samples = 0;
-    std::uint64_t rays = 0;
+    double scene_s = 0;                   ///< seconds for building the acceleration structure
+    double trace_s = 0;                   ///< seconds for tracing
+    std::uint64_t samples = 0;            ///< paths: traced pixels times spp
+    std::uint64_t rays = 0;               ///< of all kinds, shadow rays included
     std::uint64_t dropped_samples = 0;    ///< samples that were not finite; they enter no mean
     std::uint64_t non_finite_pixels = 0;  ///< pixels whose mean is beyond the range of float
-    int threads = 0;
-    int simd_width = 0;
+    int threads = 0;                      ///< that it ran on
+    int simd_width = 0;                   ///< samples that were traced side by side
 };
 
+/// A frame, and what it took.
 struct Render {
-    Frame frame;
-    RenderStatistics statistics;
+    Frame frame;                  ///< its size is reduced(size, reduction)
+    RenderStatistics statistics;  ///< for people, not for results: times differ from run to run
 };
 
 /// Called now and then, from one thread at a time, with the share of the work done in [0, 1].

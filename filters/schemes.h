@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// The neighbour schemes: they turn a low-resolution frame into a large image. A scheme is one row
-// of the table in schemes.cpp; the command line, matrices, help, tests and README follow from that
-// table.
+
+/// @file
+/// The neighbour schemes: they turn a low-resolution frame into a large image. A scheme is one row
+/// of the table in schemes.cpp; the command line, matrices, help, tests and README follow from that
+/// table.
 #pragma once
 
 #include <cstddef>
@@ -16,28 +17,37 @@
 
 namespace vecino {
 
+/// How the weight w of a neighbour follows from its distance d to the window's centre. s is the
+/// mean d over the ungated non-centre neighbours of the window.
 enum class Weighting {
-    proportional,  ///< w = d: Eq. 4 of the thesis as printed; farther counts more, the centre 0
+    proportional,  ///< w = d, the thesis's equation 4 as printed: farther counts more, the centre 0
     inverse,       ///< w = 1 / (d + 0.01 s): what its prose describes
     gaussian,      ///< w = exp(-d^2 / (2 s^2))
-};                 // s: mean d over the ungated non-centre neighbours of the window
+};
 
-enum class Metric { euclidean, manhattan };
+/// How uv distances are measured. Distances between first hits are always Euclidean (equation 5 of
+/// the thesis).
+enum class Metric {
+    euclidean,  ///< equation 3 of the thesis
+    manhattan,  ///< |du| + |dv|
+};
 
+/// What schemes can be told. Each reads those that Scheme::options names.
 struct SchemeParameters {
-    int window = 3;  ///< pixels, odd; the thesis's neighLayers k is (window - 1) / 2
-    Weighting weighting = Weighting::proportional;
-    Metric metric = Metric::euclidean;  ///< of uv distances
-    float min_normal_cosine = 0.95f;    ///< the thesis's normalFactor: dot(n_i, n_c) must exceed it
-    bool use_centre = true;
+    int window = 3;  ///< low-res pixels, odd, >= 1; the thesis's neighLayers k is (window - 1) / 2
+    Weighting weighting = Weighting::proportional;  ///< from a distance to a weight
+    Metric metric = Metric::euclidean;              ///< of uv distances
+    float min_normal_cosine = 0.95f;  ///< -1 to 1; dot(n_i, n_c) must exceed it: equation 6 of the
+                                      ///< thesis, its normalFactor
+    bool use_centre = true;           ///< whether a pixel counts among its own neighbours
 };
 
 /// An option of schemes: one name for matrices (`name`) and the command line (`flag`).
 struct SchemeOption {
-    std::string_view name;     ///< key in a matrix, e.g. "min_normal_cosine"
-    std::string_view flag;     ///< e.g. "--min-normal-cosine"
+    std::string_view name;     ///< key in a matrix, as `min_normal_cosine`
+    std::string_view flag;     ///< as `--min-normal-cosine`
     std::string_view allowed;  ///< for help and errors
-    std::string_view summary;
+    std::string_view summary;  ///< for help: one line
     /// Reads a JSON value into the parameters; throws Error(usage) through JsonValue::fail.
     void (*set)(SchemeParameters&, const JsonValue&);
     /// The value of this option as it stands in a cell's name ("w7", "inverse", ...).
@@ -47,35 +57,48 @@ struct SchemeOption {
 /// All options of all schemes.
 std::span<const SchemeOption> scheme_options();
 
-/// Throws Error(usage) naming the allowed ones.
+/// The option of that name. Throws Error(usage) naming the allowed ones.
 const SchemeOption& find_scheme_option(std::string_view name);
 
+/// A rebuilt image, and what its scheme could not average.
 struct Reconstruction {
-    Image image;
-    // All in low-res pixels.
+    Image image;  ///< linear radiance, finite
+    /// @name Low-resolution pixels
+    /// How many of them took another way than the others.
+    /// @{
     std::size_t fallback_pixels = 0;    ///< the weights summed to 0 or were not finite, or a miss
     std::size_t dropped_samples = 0;    ///< the colour was not finite
     std::size_t non_finite_pixels = 0;  ///< nothing finite was left: the value is 0
+    /// @}
 };
 
+/// A row of the table of schemes.
 struct Scheme {
     std::string_view name;  ///< the one spelling: JSON, command line, CSV, chart legend
-    Planes needs;           ///< planes beside radiance that must be there
+    Planes needs;  ///< planes beside radiance that must be there; where Frame::object_id is there
+                   ///< too, schemes that need positions leave misses out
     std::span<const std::string_view> options;  ///< names of the SchemeOptions it reads
-    std::string_view summary;
+    std::string_view summary;                   ///< what a pixel becomes, in one line
     /// The value of every low-res pixel; reconstruct() replicates it.
     Reconstruction (*run)(const Frame& low, const SchemeParameters&, int threads);
 
+    /// Whether it reads the SchemeOption of that name.
     [[nodiscard]] bool reads(std::string_view option) const;
 };
 
+/// All schemes, in this order, and what they are in the thesis:
+/// - `nearest`: algorithm 3
+/// - `mean`: algorithm 4, equation 2
+/// - `distance2d`: algorithm 5, equations 3 and 4
+/// - `distance3d`: algorithm 7, equations 4 and 5
+/// - `distance3d_normal`: algorithm 8, equations 4 to 6
 std::span<const Scheme> all_schemes();
 
-/// Throws Error(usage) naming the allowed ones.
+/// The scheme of that name. Throws Error(usage) naming the allowed ones.
 const Scheme& find_scheme(std::string_view name);
 
 /// Throws Error(mismatch) if the low-res frame lacks a plane that the scheme needs, naming both, or
-/// if one is not of the frame's size.
+/// if one is not of the frame's size. file stands in errors.
 void require_planes(const Scheme& scheme, const Frame& low, const std::string& file);
 
 /// The low-res pixel that a full-resolution pixel belongs to, per axis:
@@ -84,10 +107,11 @@ constexpr int corresponding(int full, int full_count, int low_count) {
     return static_cast<int>((2LL * full + 1) * low_count / (2LL * full_count));
 }
 
+/// What to make of a low-resolution frame.
 struct ReconstructionRequest {
-    Extent size;
-    SchemeParameters parameters;
-    int threads = 0;  ///< 0: all
+    Extent size;                  ///< of the result; no side shorter than the frame's
+    SchemeParameters parameters;  ///< Scheme::options names those that are read
+    int threads = 0;              ///< 0: all; the result does not depend on it
 };
 
 /// Rebuilds an image of the given size. Every full-res pixel takes the value of its corresponding
