@@ -44,6 +44,8 @@ class Planes {
     [[nodiscard]] constexpr bool has(Plane plane) const { return (bits_ & bit(plane)) != 0; }
     /// Puts the plane into the set, if it is not there.
     constexpr void add(Plane plane) { bits_ |= bit(plane); }
+    /// Adds all of a set.
+    constexpr void add(Planes planes) { bits_ |= planes.bits_; }
     /// Every plane that there is.
     static constexpr Planes all() {
         Planes planes;

@@ -2,75 +2,20 @@
 #include "eval/matrix.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
 
 #include "core/error.h"
-#include "core/named_values.h"
+#include "eval/axes.h"
 #include "eval/render_options.h"
 
 namespace vecino {
 namespace {
 
-constexpr Named<Budget> kBudgets[] = {
-    {"same_spp", Budget::same_spp},
-    {"equal_samples", Budget::equal_samples},
-};
-
 /// Values chosen for a cell, by key. Keys that stand here show in the cell's name.
 using Assignment = std::map<std::string, JsonValue>;
-using Axes = std::map<std::string, std::vector<JsonValue>>;
-
-std::vector<std::string_view> cell_keys() {
-    std::vector<std::string_view> keys{"scene", "scheme", "budget"};
-    for (const RenderOption& row : render_options()) keys.push_back(row.name);
-    for (const SchemeOption& row : scheme_options()) keys.push_back(row.name);
-    return keys;
-}
-
-void require_value(const std::string& key, const JsonValue& value) {
-    if (key == "scene") {
-        (void)value.string();
-    } else if (key == "scheme") {
-        std::vector<std::string_view> names;
-        for (const Scheme& scheme : all_schemes()) names.push_back(scheme.name);
-        if (std::ranges::find(names, value.string()) == names.end()) value.fail(join(names));
-    } else if (key == "budget") {
-        (void)value_of(kBudgets, value);
-    } else {
-        RenderSettings settings;
-        SchemeParameters parameters;
-        for (const RenderOption& row : render_options()) {
-            if (row.name == key) row.set(settings, value);
-        }
-        for (const SchemeOption& row : scheme_options()) {
-            if (row.name == key) row.set(parameters, value);
-        }
-    }
-}
-
-/// "size" takes an array as one value; everywhere else an array lists several.
-std::vector<JsonValue> listed(const std::string& key, const JsonValue& value) {
-    const bool one_size = key == "size" && value.raw().is_array() && !value.raw().empty() &&
-                          !value.raw().front().is_array();
-    if (one_size || !value.raw().is_array()) return {value};
-    auto values = value.elements();
-    if (values.empty()) value.fail("at least one value");
-    return values;
-}
-
-Axes read_axes(const JsonValue& json) {
-    json.require_keys(cell_keys());
-    Axes axes;
-    for (const auto& [key, value] : json.members()) {
-        for (const JsonValue& each : listed(key, value)) require_value(key, each);
-        axes.insert_or_assign(key, listed(key, value));
-    }
-    return axes;
-}
 
 void for_each_assignment(const Axes& axes, const std::function<void(const Assignment&)>& visit) {
     Assignment current;
@@ -94,6 +39,10 @@ bool matches(const Assignment& cell, const Axes& pattern) {
     });
 }
 
+Extent low_size(const RenderSettings& settings) {
+    return reduced(settings.size, settings.reduction);
+}
+
 class Expansion {
   public:
     explicit Expansion(const Matrix& matrix)
@@ -105,16 +54,7 @@ class Expansion {
                 fixed_.insert_or_assign(key, value);
         }
         const Axes axes = read_axes(json_.at("axes"));
-        std::vector<Axes> excluded;
-        if (json_.has("exclude")) {
-            for (const JsonValue& pattern : json_.at("exclude").elements()) {
-                excluded.push_back(read_axes(pattern));
-            }
-        }
-        for_each_assignment(axes, [&](const Assignment& assignment) {
-            const auto fits = [&](const Axes& pattern) { return matches(assignment, pattern); };
-            if (std::ranges::none_of(excluded, fits)) add(assignment);
-        });
+        add_axes(axes);
         if (json_.has("include")) {
             for (const JsonValue& extra : json_.at("include").elements()) add_include(axes, extra);
         }
@@ -126,8 +66,26 @@ class Expansion {
     }
 
   private:
+    void add_axes(const Axes& axes) {
+        std::vector<Axes> excluded;
+        if (json_.has("exclude")) {
+            for (const JsonValue& pattern : json_.at("exclude").elements()) {
+                excluded.push_back(read_axes(pattern));
+            }
+        }
+        for_each_assignment(axes, [&](const Assignment& assignment) {
+            const auto fits = [&](const Axes& pattern) { return matches(assignment, pattern); };
+            if (std::ranges::none_of(excluded, fits)) add(assignment);
+        });
+    }
+
+    /// What an include does not name, it takes from the axes.
     void add_include(Axes axes, const JsonValue& extra) {
-        for (const auto& [key, values] : read_axes(extra)) axes.insert_or_assign(key, values);
+        const Axes own = read_axes(extra);
+        if (own.contains("method"))
+            std::erase_if(axes, [](const auto& axis) { return is_scheme_key(axis.first); });
+        if (own.contains("scheme")) axes.erase("method");
+        for (const auto& [key, values] : own) axes.insert_or_assign(key, values);
         for_each_assignment(axes, [&](const Assignment& assignment) { add(assignment); });
     }
 
@@ -139,77 +97,96 @@ class Expansion {
     }
 
     void add(const Assignment& assignment) {
+        Cell path = make_cell(assignment, CellKind::path);
+        set_name(path, assignment);
+        path.against = path.group;
+        const std::string against = path.group;
+        push(std::move(path));
+        if (assignment.contains("method")) return;
         const auto scheme = value(assignment, "scheme");
+        if (!scheme && value(assignment, "method")) return;
         if (!scheme)
             json_.at("axes").fail("no key \"scheme\"", "\"scheme\" among the axes or in fixed");
-        push(make_cell(assignment, nullptr), assignment);
-        push(make_cell(assignment, &find_scheme(scheme->string())), assignment);
+        push_ceiling(assignment);
+        Cell cell = make_cell(assignment, CellKind::scheme);
+        cell.scheme = &find_scheme(scheme->string());
+        read_scheme_options(cell, assignment);
+        set_name(cell, assignment);
+        cell.against = against;
+        push(std::move(cell));
     }
 
-    Cell make_cell(const Assignment& assignment, const Scheme* scheme) const {
+    void push_ceiling(const Assignment& assignment) {
+        Cell ceiling = make_cell(assignment, CellKind::blocky_ceiling);
+        ceiling.group = stem(ceiling.scene) + "." + ceiling.method();
+        ceiling.group += ".f" + std::to_string(ceiling.settings.reduction);
+        append_render_slugs(ceiling.group, assignment, {"size", "max_depth"});
+        ceiling.name = ceiling.group;
+        push(std::move(ceiling));
+    }
+
+    Cell make_cell(const Assignment& assignment, CellKind kind) const {
         Cell cell;
-        cell.scheme = scheme;
+        cell.kind = kind;
         const auto scene = value(assignment, "scene");
         if (!scene)
             json_.at("axes").fail("no key \"scene\"", "\"scene\" among the axes or in fixed");
         const auto folder = std::filesystem::path(matrix_.file).parent_path();
         cell.scene = (folder / scene->string()).lexically_normal().string();
         for (const RenderOption& row : render_options()) {
-            if (row.name == "reduction" && scheme == nullptr) continue;
+            if (row.name == "reduction" && kind == CellKind::path) continue;
             if (const auto given = value(assignment, std::string(row.name)))
                 row.set(cell.settings, *given);
         }
-        if (scheme == nullptr) return cell;
-        for (const SchemeOption& row : scheme_options()) {
-            if (!scheme->reads(row.name)) continue;
-            if (const auto given = value(assignment, std::string(row.name)))
-                row.set(cell.parameters, *given);
-        }
-        if (const auto budget = value(assignment, "budget"))
-            cell.budget = value_of(kBudgets, *budget);
-        spend_budget(cell);
+        cell.spp_asked = cell.settings.spp;
         return cell;
     }
 
-    static void spend_budget(Cell& cell) {
-        const auto full = static_cast<double>(cell.settings.size.area());
-        const auto low =
-            static_cast<double>(reduced(cell.settings.size, cell.settings.reduction).area());
-        const double spp = cell.settings.spp;
-        if (cell.budget == Budget::equal_samples) {
-            cell.settings.spp = static_cast<int>(std::lround(spp * full / low));
+    void read_scheme_options(Cell& cell, const Assignment& assignment) const {
+        for (const SchemeOption& row : scheme_options()) {
+            if (!cell.scheme->reads(row.name)) continue;
+            if (const auto given = value(assignment, std::string(row.name)))
+                row.set(cell.parameters, *given);
         }
-        cell.samples_ratio = static_cast<double>(cell.settings.spp) * low / (spp * full);
+        if (const auto budget = value(assignment, "budget")) cell.budget = budget_of(*budget);
+        cell.settings.spp = budgeted_spp(cell.budget, cell.spp_asked,
+                                         {cell.settings.size, low_size(cell.settings)});
     }
 
-    void set_name(Cell& cell, const Assignment& assignment) const {
+    /// Appends what the assignment gives for the named options; for all but reduction and seed when
+    /// none is named.
+    static void append_render_slugs(std::string& name, const Assignment& assignment,
+                                    std::initializer_list<std::string_view> options = {}) {
+        for (const RenderOption& row : render_options()) {
+            const bool wanted = options.size() == 0
+                                    ? row.name != "reduction" && row.name != "seed"
+                                    : std::ranges::find(options, row.name) != options.end();
+            const auto given = assignment.find(std::string(row.name));
+            if (!wanted || given == assignment.end()) continue;
+            RenderSettings
+                asked;  // spp is named as it was asked for, not as a budget turned it out
+            row.set(asked, given->second);
+            name += "." + row.slug(asked);
+        }
+    }
+
+    static void set_name(Cell& cell, const Assignment& assignment) {
         std::string name = stem(cell.scene) + "." + cell.method();
-        const auto append = [&name](const std::string& part) { name += "." + part; };
         if (cell.scheme != nullptr) {
-            append("f" + std::to_string(cell.settings.reduction));
+            name += ".f" + std::to_string(cell.settings.reduction);
             for (const SchemeOption& row : scheme_options()) {
                 if (!cell.scheme->reads(row.name)) continue;
-                if (row.name == "window" || assignment.contains(std::string(row.name))) {
-                    append(row.slug(cell.parameters));
-                }
+                if (row.name == "window" || assignment.contains(std::string(row.name)))
+                    name += "." + row.slug(cell.parameters);
             }
-            if (cell.budget != Budget::same_spp) append(name_of(kBudgets, cell.budget));
+            if (cell.budget != Budget::same_spp) name += "." + budget_name(cell.budget);
         }
-        // spp is named as it was asked for, not as a budget turned it out
-        for (const RenderOption& row : render_options()) {
-            if (row.name == "reduction" || row.name == "seed") continue;
-            const auto given = assignment.find(std::string(row.name));
-            if (given == assignment.end()) continue;
-            RenderSettings asked;
-            row.set(asked, given->second);
-            append(row.slug(asked));
-        }
+        append_render_slugs(name, assignment);
         cell.group = name;
         cell.name = name + ".s" + std::to_string(cell.settings.seed);
     }
 
-    void push(Cell cell, const Assignment& assignment) {
-        set_name(cell, assignment);
+    void push(Cell cell) {
         scene_order_.try_emplace(cell.scene, scene_order_.size());
         const auto [same, is_new] = by_name_.try_emplace(cell.name, cell.parameters_json());
         if (is_new) {
@@ -229,20 +206,9 @@ class Expansion {
     std::map<std::string, std::size_t> scene_order_;
 };
 
-RenderSettings read_reference(const JsonValue& json) {
-    constexpr std::string_view kKeys[] = {"spp", "light_sampling", "sampler", "seed"};
-    json.require_keys(kKeys);
-    RenderSettings settings;
-    for (const RenderOption& row : render_options()) {
-        const bool known = std::ranges::find(kKeys, row.name) != std::end(kKeys);
-        if (known && json.has(row.name)) row.set(settings, json.at(row.name));
-    }
-    return settings;
-}
-
-void check_fixed(const JsonValue& json) {
-    json.require_keys(cell_keys());
-    for (const auto& [key, value] : json.members()) require_value(key, value);
+/// What decides the ceiling: all that decides the reference, and the blocks.
+bool decides_ceiling(std::string_view option) {
+    return option == "size" || option == "reduction" || option == "max_depth";
 }
 
 }  // namespace
@@ -252,15 +218,21 @@ std::string stem(const std::string& path) {
 }
 
 std::string Cell::method() const {
-    return scheme == nullptr ? "path" : std::string(scheme->name);
+    if (kind == CellKind::blocky_ceiling) return "blocky_ceiling";
+    return kind == CellKind::path ? "path" : std::string(scheme->name);
 }
 
 nlohmann::json Cell::parameters_json() const {
     nlohmann::json json{{"scene", scene}, {"method", method()}};
-    for (const RenderOption& row : render_options())
+    for (const RenderOption& row : render_options()) {
+        if (kind == CellKind::blocky_ceiling && !decides_ceiling(row.name)) continue;
+        if (kind == CellKind::path && row.name == "reduction") continue;
         json[std::string(row.name)] = row.get(settings);
+    }
+    if (kind == CellKind::blocky_ceiling) return json;
+    json["spp_asked"] = spp_asked;
+    json["budget"] = budget_name(budget);
     if (scheme == nullptr) return json;
-    json["budget"] = name_of(kBudgets, budget);
     for (const SchemeOption& row : scheme_options()) {
         if (scheme->reads(row.name)) json[std::string(row.name)] = row.slug(parameters);
     }
@@ -268,22 +240,11 @@ nlohmann::json Cell::parameters_json() const {
     return json;
 }
 
-Matrix load_matrix(const std::string& path) {
-    Matrix matrix;
-    matrix.file = path;
-    matrix.document = parse_json_file(path);
-    const JsonValue json(matrix.document, path);
-    json.require_keys({"name", "axes", "exclude", "include", "fixed", "reference", "measure"});
-    matrix.name = json.at("name").string();
-    if (json.has("fixed")) check_fixed(json.at("fixed"));
-    matrix.reference = read_reference(json.at("reference"));
-    if (json.has("measure")) {
-        json.at("measure").require_keys({"repeat"});
-        if (json.at("measure").has("repeat"))
-            matrix.repeat = json.at("measure").at("repeat").integer(1, 1000);
-    }
-    (void)read_axes(json.at("axes"));
-    return matrix;
+double Cell::samples_ratio() const {
+    if (kind == CellKind::blocky_ceiling) return 0;
+    const auto full = static_cast<double>(settings.size.area());
+    const auto low = static_cast<double>(low_size(settings).area());
+    return static_cast<double>(settings.spp) * low / (static_cast<double>(spp_asked) * full);
 }
 
 std::vector<Cell> expand(const Matrix& matrix) {

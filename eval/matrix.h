@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// An evaluation matrix: axes in a JSON file, expanded into named cells before anything runs. Keys
-// of axes, fixed, exclude and include are "scene", "scheme", "budget" and every row of the option
-// tables of renders and schemes.
+// An evaluation matrix: axes in a JSON file, expanded into named cells before anything runs. A
+// matrix may extend another one and then says only what differs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,46 +9,53 @@
 #include <vector>
 
 #include "core/render.h"
+#include "eval/budget.h"
 #include "filters/schemes.h"
 
 namespace vecino {
 
-/// How many samples a low-resolution frame gets, against path tracing at full resolution.
-enum class Budget {
-    same_spp,       ///< as many per pixel (thesis 5.3)
-    equal_samples,  ///< as many in all: spp * W*H / (w*h), rounded (thesis 5.4.1)
+enum class CellKind {
+    path,            ///< plain path tracing of every pixel
+    scheme,          ///< a low-resolution frame, rebuilt
+    blocky_ceiling,  ///< the best that is constant per low-resolution pixel, from the reference
 };
 
-/// One thing to measure: a scheme with its parameters on a scene, or plain path tracing.
+/// One thing to measure: a scheme with its parameters on a scene, plain path tracing that it is
+/// held against, or the limit of what such schemes can reach.
 struct Cell {
-    std::string name;                ///< e.g. cornell_sphere.distance3d_normal.f2.w7.s1
-    std::string group;               ///< the name without its seed: cells of a group are averaged
-    std::string scene;               ///< path of the scene file
-    const Scheme* scheme = nullptr;  ///< null: path tracing of every pixel
+    std::string name;     ///< e.g. cornell_sphere.distance3d_normal.f2.w7.s1
+    std::string group;    ///< the name without its seed: cells of a group are averaged
+    std::string against;  ///< the group of path tracing that its time is a share of; may be empty
+    std::string scene;    ///< path of the scene file
+    CellKind kind = CellKind::path;
+    const Scheme* scheme = nullptr;  ///< null unless it is a scheme
     Budget budget = Budget::same_spp;
+    int spp_asked =
+        0;  ///< of path tracing at full resolution; settings.spp is what the budget gave
     SchemeParameters parameters;
     RenderSettings settings;  ///< of the frame that the cell reads
 
-    [[nodiscard]] std::string method() const;  ///< the scheme's name, or "path"
+    [[nodiscard]] std::string method() const;  ///< the scheme's name, "path" or "blocky_ceiling"
     /// Everything that decides the result, for results.jsonl and for telling a finished cell from a
     /// stale one.
     [[nodiscard]] nlohmann::json parameters_json() const;
-    /// Samples traced, against path tracing at full resolution with the matrix's spp.
-    double samples_ratio = 1.0;
+    /// Samples traced, against path tracing at full resolution with spp_asked.
+    [[nodiscard]] double samples_ratio() const;
 };
 
 struct Matrix {
     std::string name;
     std::string file;
-    nlohmann::json document;  ///< checked
+    nlohmann::json document;  ///< checked, with what it extends
     RenderSettings reference;
     int repeat = 1;  ///< timings of a stage that takes under 0.5 s; the median counts
 };
 
-/// Reads and checks a matrix; scene paths are relative to its file. Throws as load_scene does.
+/// Reads and checks a matrix; scene paths are relative to the file that holds them. Throws as
+/// load_scene does.
 Matrix load_matrix(const std::string& path);
 
-/// All cells, path tracing included, in a fixed order with unique names.
+/// All cells, path tracing and ceilings included, in a fixed order with unique names.
 std::vector<Cell> expand(const Matrix& matrix);
 
 /// Settings of the reference that a cell is held against.

@@ -14,19 +14,28 @@ std::string text_hash(const std::string& text) {
     return digits;
 }
 
+Planes reference_planes() {
+    Planes planes = kRegionPlanes;
+    for (const Plane plane : {Plane::radiance, Plane::direct, Plane::indirect}) planes.add(plane);
+    return planes;
+}
+
 const StoredReference& ReferenceStore::get(const std::string& key, const std::string& scene,
-                                           const std::function<Image()>& make) {
+                                           const std::function<Frame()>& make) {
     const auto known = references_.find(key);
     if (known != references_.end()) return known->second;
     const std::string name = scene + "-" + text_hash(key).substr(0, 8);
     const std::string path = directory_.file_in("references", name + ".exr");
     if (!std::filesystem::exists(path)) {
-        const Image image = make();
-        save_image(image, directory_.file_in("references", name + ".png"));
-        save_image(image, path);
+        const Frame frame = make();
+        save_image(frame.radiance, directory_.file_in("references", name + ".png"));
+        save_frame(frame, path);
     }
-    return references_.emplace(key, StoredReference{load_image(path), "references/" + name})
-        .first->second;
+    Frame frame = load_frame(path);
+    StoredReference stored{std::move(frame.radiance), {}, "references/" + name};
+    frame.radiance = Image();
+    stored.regions = regions_of(frame);
+    return references_.emplace(key, std::move(stored)).first->second;
 }
 
 }  // namespace vecino

@@ -7,10 +7,12 @@
 
 #include <string>
 
+#include "eval/report_data.h"
+
 namespace vecino {
 
-/// Writes the error maps of all cells and the report; returns the report's path (output, or
-/// DIR/report.html when that is empty). Throws Error(file) for a directory without results.
-std::string write_report(const std::string& directory, const std::string& output = "");
+/// Writes the error maps of all cells, the verdicts and the report; returns the report's path
+/// (output, or DIR/report.html when that is empty). Throws Error(file).
+std::string write_report(const ReportData& data, const std::string& output = "");
 
 }  // namespace vecino

@@ -9,6 +9,8 @@ namespace vecino {
 
 extern const std::string_view kReportHtml;
 extern const std::string_view kReportCss;
+extern const std::string_view kReproductionCss;
+extern const std::string_view kReportChartsJs;
 extern const std::string_view kReportJs;
 extern const std::string_view kChartJs;
 

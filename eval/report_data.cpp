@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "eval/group_statistics.h"
 #include "eval/run_directory.h"
 #include "filters/schemes.h"
 
@@ -20,6 +21,8 @@ using Json = nlohmann::json;
 constexpr std::string_view kPathShape = "crossRot";
 constexpr std::string_view kShapes[] = {"rect",         "triangle", "rectRot", "circle",
                                         "triangleDown", "star",     "cross"};
+constexpr const char* kCeiling = "blocky_ceiling";
+constexpr std::string_view kCeilingShape = "line";
 constexpr int kColours = 8;
 
 void require_row(const Json& row, const std::string& file) {
@@ -80,7 +83,8 @@ std::vector<MethodStyle> method_styles(const std::vector<GroupSummary>& groups) 
     for (const GroupSummary& group : groups) {
         used.insert(group.method);
         const bool known = std::ranges::find(names, group.method) != names.end();
-        if (!known && group.method != "path") names.push_back(group.method);
+        const bool is_special = group.method == "path" || group.method == kCeiling;
+        if (!known && !is_special) names.push_back(group.method);
     }
     // A scheme keeps its looks whichever others a run holds.
     std::vector<MethodStyle> styles{{"path", kPathShape, 0}};
@@ -88,6 +92,7 @@ std::vector<MethodStyle> method_styles(const std::vector<GroupSummary>& groups) 
         const auto colour = static_cast<int>(i % kColours) + 1;
         styles.push_back({names[i], kShapes[i % std::size(kShapes)], colour});
     }
+    styles.push_back({kCeiling, kCeilingShape, 0});
     std::erase_if(styles, [&](const MethodStyle& style) { return !used.contains(style.method); });
     return styles;
 }
@@ -99,7 +104,8 @@ std::vector<std::string> varying_parameters(const std::vector<GroupSummary>& gro
         for (const auto& [key, value] : group.params.items()) values[key].insert(value);
     }
     std::vector<std::string> names{"reduction", "window"};
-    const std::set<std::string> apart{"scene", "method", "seed", "reduction", "window"};
+    const std::set<std::string> apart{"scene",     "method", "seed",
+                                      "reduction", "window", "spp_asked"};
     for (const auto& [key, different] : values) {
         if (different.size() > 1 && !apart.contains(key)) names.push_back(key);
     }
@@ -125,6 +131,16 @@ void set_decimals(ReportData& data) {
     data.relmse_decimals = decimals_for(least_relmse, 2);
 }
 
+/// The claims stand in the matrix that run.json keeps.
+void read_reproduction_of(ReportData& data) {
+    const Json config = data.run.value("config", Json::object());
+    if (!config.is_object() || !config.contains("reproduction")) return;
+    ReportReproduction found;
+    found.specification = read_reproduction(JsonValue(config, data.directory + "/run.json"));
+    found.result = evaluate(found.specification, data.groups);
+    data.reproduction = std::move(found);
+}
+
 }  // namespace
 
 const MethodStyle& ReportData::style_of(const std::string& method) const {
@@ -136,7 +152,9 @@ ReportData read_report_data(const std::string& directory) {
     data.directory = directory;
     read_rows(data);
     data.run = read_run(directory + "/run.json");
-    data.groups = summarise(data.rows);
+    data.groups =
+        summarise(data.rows, group_statistics(RunDirectory::open(data.directory), data.rows));
+    read_reproduction_of(data);
     for (const GroupSummary& group : data.groups) {
         const bool is_new = std::ranges::find(data.scenes, group.scene) == data.scenes.end();
         if (is_new) data.scenes.push_back(group.scene);
@@ -145,6 +163,29 @@ ReportData read_report_data(const std::string& directory) {
     data.varying = varying_parameters(data.groups);
     set_decimals(data);
     return data;
+}
+
+void write_reproduction(const ReportData& data) {
+    if (!data.reproduction) return;
+    const Json json =
+        reproduction_json(data.reproduction->specification, data.reproduction->result);
+    write_text_file(data.directory + "/reproduction.json", json.dump(1) + "\n");
+}
+
+std::vector<std::size_t> variants_of(const ReportData& data, const GroupSummary& group) {
+    std::vector<std::size_t> indices;
+    if (!data.reproduction) return indices;
+    const auto& variants = data.reproduction->specification.variants;
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+        if (Selection().matches(group.params, variants[i].where.without("spp")))
+            indices.push_back(i);
+    }
+    return indices;
+}
+
+std::size_t index_of(const ReportData& data, const GroupSummary& group) {
+    const auto found = std::ranges::find(data.groups, group.group, &GroupSummary::group);
+    return static_cast<std::size_t>(found - data.groups.begin());
 }
 
 std::string parameter_text(const Json& params, const std::string& name) {

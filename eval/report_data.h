@@ -5,10 +5,12 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "eval/reproduction.h"
 #include "eval/summary.h"
 
 namespace vecino {
@@ -20,13 +22,20 @@ struct MethodStyle {
     int colour = 0;          ///< a colour of report.css; 0 is that of path tracing
 };
 
+/// What the matrix reproduces, and how far it does.
+struct ReportReproduction {
+    Reproduction specification;
+    ReproductionResult result;
+};
+
 struct ReportData {
     std::string directory;                   ///< as it was given
     nlohmann::json run;                      ///< run.json; an empty object if it is not there yet
     std::vector<nlohmann::json> rows;        ///< the last one of each cell, in the file's order
     std::map<std::string, std::size_t> row;  ///< index into rows, by cell
     std::vector<GroupSummary> groups;
-    std::vector<std::string> scenes;   ///< in the order of the groups
+    std::optional<ReportReproduction> reproduction;  ///< none: the matrix claims nothing
+    std::vector<std::string> scenes;                 ///< in the order of the groups
     std::vector<MethodStyle> methods;  ///< path tracing first, then schemes, then others
     std::vector<std::string> varying;  ///< parameters that tell groups apart
     int time_decimals = 3;             ///< so that the least time has three digits
@@ -40,6 +49,15 @@ struct ReportData {
 
 /// Throws Error(file) for a directory without results, or with rows that lack something.
 ReportData read_report_data(const std::string& directory);
+
+/// Writes the verdicts into the run directory, if there are any.
+void write_reproduction(const ReportData& data);
+
+/// Indices of the reproduction's variants that a group belongs to, whatever its spp.
+std::vector<std::size_t> variants_of(const ReportData& data, const GroupSummary& group);
+
+/// The index of a group in data.groups.
+std::size_t index_of(const ReportData& data, const GroupSummary& group);
 
 /// "7", "512 × 512", "gaussian"; "–" where there is no such parameter.
 std::string parameter_text(const nlohmann::json& params, const std::string& name);

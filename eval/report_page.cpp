@@ -25,12 +25,20 @@ Json data_json(const ReportData& data) {
         Json group = summary_json(data.groups[i]);
         group["id"] = "g" + std::to_string(i);
         group["parameters"] = parameters_text(data, data.groups[i]);
+        group["variants"] = variants_of(data, data.groups[i]);
+        group.erase("cells");
         groups.push_back(std::move(group));
     }
     return {{"groups", std::move(groups)},
             {"methods", methods_json(data)},
             {"scenes", data.scenes},
+            {"graphs", graphs_json(data)},
             {"time_decimals", data.time_decimals}};
+}
+
+std::string legend_remark(const std::string& method) {
+    if (method == "path") return " (plain path tracing)";
+    return method == "blocky_ceiling" ? " (best of one value per low-res pixel)" : "";
 }
 
 std::string name_of(const ReportData& data) {
@@ -52,9 +60,38 @@ std::string legend_html(const ReportData& data) {
         html += "\">";
         html += marker_html(style);
         html += escaped(style.method);
-        html += style.method == "path" ? " (plain path tracing)</button>\n" : "</button>\n";
+        html += legend_remark(style.method);
+        html += "</button>\n";
     }
     return html;
+}
+
+/// Links to the sections that only a reproduction has.
+std::string contents_html(const ReportData& data) {
+    if (!data.reproduction) return "";
+    return "<a href=\"#reproduction\">Reproduction</a> <a href=\"#graphs\">Graphs</a> "
+           "<a href=\"#figures\">Figures</a> ";
+}
+
+std::string chart_switches_html(const ReportData& data) {
+    const auto button = [](const std::string& attribute, const std::string& text, bool pressed) {
+        return "<button type=\"button\" " + attribute + " aria-pressed=\"" +
+               (pressed ? "true" : "false") + "\">" + escaped(text) + "</button>";
+    };
+    std::string html =
+        "<div class=\"switch\" role=\"group\" aria-label=\"Where the error is measured\">" +
+        button("data-region=\"\"", "whole image", true);
+    for (const RegionInfo& info : kRegions) {
+        const std::string name(info.name);
+        html += button("data-region=\"" + name + "\"", name, false);
+    }
+    html += "</div>\n";
+    if (!data.reproduction) return html;
+    html += "<div class=\"switch\" role=\"group\" aria-label=\"Variant\">";
+    const auto& variants = data.reproduction->specification.variants;
+    for (std::size_t i = 0; i < variants.size(); ++i)
+        html += button("data-variant=\"" + std::to_string(i) + "\"", variants[i].label, i == 0);
+    return html + button("data-variant=\"\"", "all", false) + "</div>\n";
 }
 
 std::string charts_html(const ReportData& data) {
@@ -71,18 +108,25 @@ std::string charts_html(const ReportData& data) {
 
 std::string report_page(const ReportData& data, const ReportPictures& pictures) {
     return fill_page(kReportHtml, {{"name", escaped(name_of(data))},
-                                   {"css", std::string(kReportCss)},
+                                   {"css", std::string(kReportCss) + std::string(kReproductionCss)},
                                    {"facts", facts_html(data)},
+                                   {"reproduction", reproduction_html(data)},
+                                   {"graphs", graphs_html(data)},
+                                   {"figures", figures_html(data, pictures)},
+                                   {"switches", chart_switches_html(data)},
                                    {"legend", legend_html(data)},
                                    {"charts", charts_html(data)},
                                    {"table", table_html(data)},
                                    {"colour_bars", colour_bars_html(pictures)},
                                    {"cards", cards_html(data, pictures)},
                                    {"metrics", metrics_html()},
+                                   {"regions", regions_html()},
+                                   {"contents", contents_html(data)},
                                    {"failures", failures_html(data)},
                                    {"provenance", provenance_html(data)},
                                    {"data", script_json(data_json(data))},
                                    {"chart_js", script_source(kChartJs)},
+                                   {"report_charts_js", script_source(kReportChartsJs)},
                                    {"report_js", script_source(kReportJs)}});
 }
 

@@ -112,10 +112,19 @@ void draw_maps(const MapJob& job, const ReportPictures& pictures) {
     if (std::filesystem::exists(png)) job.shown->image = png_url(read_file(png));
 }
 
+void add_figure_pictures(const ReportData& data, ReportPictures& pictures) {
+    if (!data.reproduction) return;
+    for (const Figure& figure : data.reproduction->specification.figures) {
+        if (figure.kind == FigureKind::mosaic) continue;
+        pictures.figures[figure.id] = figure_pictures(data, figure);
+    }
+}
+
 }  // namespace
 
 ReportPictures make_report_pictures(const ReportData& data) {
     ReportPictures pictures;
+    add_figure_pictures(data, pictures);
     References references;
     std::vector<MapJob> jobs = map_jobs(data, references, pictures);
     for_each_job(jobs, measure);

@@ -6,8 +6,10 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/grid.h"
+#include "eval/figure_pictures.h"
 #include "eval/report_data.h"
 
 namespace vecino {
@@ -24,7 +26,8 @@ struct ReportPictures {
     bool has_non_finite = false;                    ///< in any map
     std::map<std::string, GroupPictures> by_group;  ///< groups of which a cell has an image
     std::map<std::string, std::string> references;  ///< URL by the rows' "reference_file"
-    std::map<std::string, Extent> sizes;            ///< of the images of each reference
+    std::map<std::string, std::vector<LabelledPicture>> figures;  ///< that are no mosaic, by id
+    std::map<std::string, Extent> sizes;  ///< of the images of each reference
 };
 
 /// Writes cells/NAME/error.png and error_signed.png of every cell that has an image.

@@ -62,7 +62,7 @@ std::string cells(const ReportData& data) {
 
 /// Parameters with one value in the whole matrix.
 std::string fixed_parameters(const ReportData& data) {
-    const std::set<std::string> apart{"scene", "method", "seed"};
+    const std::set<std::string> apart{"scene", "method", "seed", "spp_asked"};
     std::string text;
     for (const auto& [key, value] : data.groups.front().params.items()) {
         const bool varies = std::ranges::find(data.varying, key) != data.varying.end();
@@ -94,6 +94,8 @@ bool is_plain(char c) {
     return alphanumeric || std::string_view("_-./+,:=@%").find(c) != std::string_view::npos;
 }
 
+}  // namespace
+
 std::string shell_word(const std::string& text) {
     if (!text.empty() && std::ranges::all_of(text, is_plain)) return text;
     std::string quoted = "'";
@@ -101,14 +103,12 @@ std::string shell_word(const std::string& text) {
     return quoted + "'";
 }
 
-std::string command(const ReportData& data) {
+std::string run_command_text(const ReportData& data) {
     std::string text = data.run.value("command", "");
     if (text.empty()) return "unknown: run.json is missing or names no command";
     if (text.find(" -o ") == std::string::npos) text += " -o " + shell_word(data.directory);
     return text;
 }
-
-}  // namespace
 
 std::string facts_html(const ReportData& data) {
     std::string html = "<dl class=\"facts\">\n";
@@ -121,7 +121,7 @@ std::string facts_html(const ReportData& data) {
     html += fact("In all cells", fixed_parameters(data));
     html += fact("Reference", references(data));
     return html + "</dl>\n<p class=\"command\"><span>Made again by</span> <code id=\"command\">" +
-           escaped(command(data)) + "</code></p>";
+           escaped(run_command_text(data)) + "</code></p>";
 }
 
 std::string metrics_html() {
@@ -130,6 +130,15 @@ std::string metrics_html() {
         html += "<div><dt><code>" + escaped(metric.name) + "</code></dt><dd>" +
                 escaped(metric.formula) + "; " + (metric.higher_is_better ? "higher" : "lower") +
                 " is better</dd></div>\n";
+    }
+    return html;
+}
+
+std::string regions_html() {
+    std::string html;
+    for (const RegionInfo& region : kRegions) {
+        html += "<div><dt><code>" + std::string(region.name) + "</code></dt><dd>" +
+                escaped(region.definition) + "</dd></div>\n";
     }
     return html;
 }

@@ -18,13 +18,28 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures);
 std::string facts_html(const ReportData& data);
 std::string failures_html(const ReportData& data);
 std::string provenance_html(const ReportData& data);
+/// The command line that made the run.
+std::string run_command_text(const ReportData& data);
+/// A word as a shell takes it: quoted where it has to be.
+std::string shell_word(const std::string& text);
 std::string metrics_html();
+std::string regions_html();
+std::string contents_html(const ReportData& data);
 
 // The chart's frame and the table.
 std::string marker_html(const MethodStyle& style);
 std::string legend_html(const ReportData& data);
 std::string charts_html(const ReportData& data);
 std::string table_html(const ReportData& data);
+
+/// Buttons that switch the charts between the whole image and its regions, and between variants.
+std::string chart_switches_html(const ReportData& data);
+
+// What the run reproduces; empty where its matrix claims nothing.
+std::string reproduction_html(const ReportData& data);
+std::string graphs_html(const ReportData& data);
+nlohmann::json graphs_json(const ReportData& data);
+std::string figures_html(const ReportData& data, const ReportPictures& pictures);
 
 // Pictures.
 std::string colour_bars_html(const ReportPictures& pictures);

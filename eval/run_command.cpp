@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "eval/commands.h"
 #include "eval/progress.h"
 #include "eval/report.h"
-#include "eval/run_directory.h"
 #include "eval/run_matrix.h"
 #include "eval/summary.h"
 
@@ -20,14 +20,28 @@ struct RunArguments {
     bool dry_run = false;
 };
 
-void print_results(const RunArguments& arguments, const std::vector<Cell>& cells) {
-    const auto rows = RunDirectory::open(arguments.directory).rows();
-    std::vector<nlohmann::json> ordered;
-    for (const Cell& cell : cells) {
-        if (rows.contains(cell.name)) ordered.push_back(rows.at(cell.name));
+void print_verdicts(const ReportReproduction& reproduction) {
+    for (const Variant& variant : reproduction.specification.variants) {
+        std::map<Verdict, int> counts;
+        for (const auto& results : reproduction.result.claims) {
+            for (const ClaimResult& result : results) {
+                if (result.variant == variant.id && result.region.empty()) ++counts[result.verdict];
+            }
+        }
+        std::string text;
+        for (const Verdict verdict : {Verdict::reproduced, Verdict::trend, Verdict::not_reproduced,
+                                      Verdict::not_testable}) {
+            text += text.empty() ? "" : ", ";
+            text += std::to_string(counts[verdict]) + " " + verdict_text(verdict);
+        }
+        std::printf("claims, %s: %s\n", variant.label.c_str(), text.c_str());
     }
-    std::printf("%s", summary_table(summarise(ordered)).c_str());
-    for (const nlohmann::json& row : ordered) {
+}
+
+void print_results(const ReportData& data) {
+    std::printf("%s", summary_table(data.groups).c_str());
+    if (data.reproduction) print_verdicts(*data.reproduction);
+    for (const nlohmann::json& row : data.rows) {
         if (row["status"] == "ok") continue;
         std::fprintf(stderr, "failed: %s: %s\n", row["cell"].get<std::string>().c_str(),
                      row["reason"].get<std::string>().c_str());
@@ -64,9 +78,10 @@ ExitCode run_run(const RunArguments& arguments) {
         std::fprintf(stderr, "interrupted: the same command goes on from here\n");
         return ExitCode::interrupted;
     }
-    print_results(arguments, expand(matrix));
+    const ReportData data = read_report_data(arguments.directory);
+    print_results(data);
     print_counts(summary);
-    std::printf("report: %s\n", write_report(arguments.directory).c_str());
+    std::printf("report: %s\n", write_report(data).c_str());
     return summary.failed > 0 ? ExitCode::quality : ExitCode::ok;
 }
 
@@ -99,8 +114,9 @@ void add_report_command(CLI::App& app, Action& chosen) {
     command->add_option("-o", arguments->output, "HTML file; default: DIR/report.html");
     command->callback([arguments, &chosen] {
         chosen = [arguments] {
-            std::printf("report: %s\n",
-                        write_report(arguments->directory, arguments->output).c_str());
+            std::printf(
+                "report: %s\n",
+                write_report(read_report_data(arguments->directory), arguments->output).c_str());
             return ExitCode::ok;
         };
     });

@@ -5,15 +5,15 @@
 #include <ctime>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "core/error.h"
 #include "core/files.h"
-#include "core/image_io.h"
 #include "core/timing.h"
+#include "eval/cell_result.h"
 #include "eval/commands.h"
-#include "eval/metrics_json.h"
+#include "eval/equal_time.h"
+#include "eval/frame_jobs.h"
 #include "eval/progress.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
@@ -21,31 +21,13 @@
 namespace vecino {
 namespace {
 
-// A stage that takes longer than this averages its own noise, and is timed once.
-constexpr double kRepeatBelow_s = 0.5;
-
-std::string settings_key(const std::string& scene, const RenderSettings& settings) {
-    Cell cell;
-    cell.scene = scene;
-    cell.settings = settings;
-    return cell.parameters_json().dump();
+std::string frame_key(const std::string& scene, const RenderSettings& settings) {
+    return frame_json(scene, settings).dump();
 }
 
-/// A frame and the cells that read it.
-struct FrameJob {
-    std::vector<const Cell*> cells;
-    RenderSettings settings;
-
-    [[nodiscard]] double samples() const {
-        return static_cast<double>(reduced(settings.size, settings.reduction).area()) *
-               settings.spp;
-    }
-};
-
-struct TimedFrame {
-    Frame frame;
-    RenderStatistics statistics;  ///< times are medians
-};
+double traced_samples(const RenderSettings& settings) {
+    return FrameJob{{}, settings}.samples();
+}
 
 class Runner {
   public:
@@ -55,7 +37,11 @@ class Runner {
         build_ = versions["build"].get<std::string>();
         run_ = {{"name", matrix.name}, {"config", matrix.document}, {"versions", versions}};
         require_same_matrix();
-        for (const Cell& cell : cells_) load_scene_of(cell);
+        for (Cell& cell : cells_) {
+            load_scene_of(cell);
+            if (cell.budget != Budget::equal_time) continue;
+            if (const auto spp = equal_time_.spp(cell)) cell.settings.spp = *spp;
+        }
         old_rows_ = directory_.rows();
         plan_ = plan_run(cells_, options, [this](const Cell& cell) { return state_of(cell); });
     }
@@ -64,7 +50,8 @@ class Runner {
         RunSummary summary;
         keep_old_rows(summary);
         write_run();
-        const std::vector<FrameJob> jobs = pending_jobs();
+        measure_equal_times();
+        const std::vector<FrameJob> jobs = frame_jobs(plan_);
         total_samples_ = planned_samples(jobs);
         ProgressBar bar(matrix_.name);
         bar_ = &bar;
@@ -82,7 +69,7 @@ class Runner {
 
     RunEstimate estimate() {
         RunEstimate result;
-        const std::vector<FrameJob> jobs = pending_jobs();
+        const std::vector<FrameJob> jobs = frame_jobs(plan_);
         for (const FrameJob& job : jobs) {
             for (const Cell* cell : job.cells) result.cells.push_back(cell->name);
         }
@@ -90,10 +77,10 @@ class Runner {
         std::set<std::string> references;
         for (const FrameJob& job : jobs) {
             const Cell& first = *job.cells.front();
-            result.time_s += job.samples() / rate(first.scene, job.settings);
+            if (job.traces) result.time_s += job.samples() / rate(first.scene, job.settings);
             const RenderSettings reference = reference_settings(matrix_, first);
-            if (!references.insert(settings_key(first.scene, reference)).second) continue;
-            result.time_s += FrameJob{{}, reference}.samples() / rate(first.scene, reference);
+            if (!references.insert(frame_key(first.scene, reference)).second) continue;
+            result.time_s += traced_samples(reference) / rate(first.scene, reference);
         }
         return result;
     }
@@ -144,6 +131,22 @@ class Runner {
         }
     }
 
+    // Before the first frame: all seeds of a group get the same.
+    void measure_equal_times() {
+        for (const PlannedCell& planned : plan_) {
+            const Cell& cell = *planned.cell;
+            if (!planned.run || cell.budget != Budget::equal_time) continue;
+            if (!equal_time_.spp(cell, build_)) {
+                const int spp = measure_equal_time_spp(scenes_.at(cell.scene), cell);
+                equal_time_.put(cell, build_, spp);
+            }
+        }
+        for (Cell& cell : cells_) {
+            if (cell.budget != Budget::equal_time) continue;
+            if (const auto spp = equal_time_.spp(cell)) cell.settings.spp = *spp;
+        }
+    }
+
     void count(RunSummary& summary) const {
         summary.cells = cells_.size();
         summary.done = done_cells_;
@@ -151,44 +154,17 @@ class Runner {
         for (const auto& [name, row] : rows_) summary.failed += row["status"] != "ok" ? 1 : 0;
     }
 
-    /// What is to do, by frame, in the order of the cells.
-    std::vector<FrameJob> pending_jobs() const {
-        std::vector<FrameJob> jobs;
-        std::map<std::string, std::size_t> by_key;
-        for (const PlannedCell& planned : plan_) {
-            if (!planned.run) continue;
-            const Cell& cell = *planned.cell;
-            const auto [entry, is_new] =
-                by_key.try_emplace(settings_key(cell.scene, cell.settings), jobs.size());
-            if (is_new) jobs.push_back({{}, cell.settings});
-            FrameJob& job = jobs[entry->second];
-            if (is_new) job.settings.planes = {Plane::radiance};
-            add_planes(cell, job.settings.planes);
-            job.cells.push_back(&cell);
-        }
-        return jobs;
-    }
-
     /// Samples per second, from a short render of the same kind.
     double rate(const std::string& scene, RenderSettings settings) {
         settings.size = {64, 64};
         settings.reduction = 1;
         settings.spp = 64;
-        const std::string key = settings_key(scene, settings);
+        const std::string key = frame_key(scene, settings);
         const auto known = rates_.find(key);
         if (known != rates_.end()) return known->second;
         const RenderStatistics s = render(scenes_.at(scene), settings).statistics;
         const double measured = static_cast<double>(s.samples) / std::max(s.trace_s, 1e-6);
         return rates_.emplace(key, measured).first->second;
-    }
-
-    // Only what some scheme reads is traced and kept.
-    static void add_planes(const Cell& cell, Planes& planes) {
-        if (cell.scheme == nullptr) return;
-        for (const PlaneInfo& info : all_planes()) {
-            if (cell.scheme->needs.has(info.plane)) planes.add(info.plane);
-        }
-        if (cell.scheme->needs.has(Plane::position)) planes.add(Plane::id);
     }
 
     double planned_samples(const std::vector<FrameJob>& jobs) const {
@@ -197,8 +173,8 @@ class Runner {
         for (const FrameJob& job : jobs) {
             total += job.samples();
             const RenderSettings reference = reference_settings(matrix_, *job.cells.front());
-            const std::string key = settings_key(job.cells.front()->scene, reference);
-            if (references.insert(key).second) total += FrameJob{{}, reference}.samples();
+            const std::string key = frame_key(job.cells.front()->scene, reference);
+            if (references.insert(key).second) total += traced_samples(reference);
         }
         return total;
     }
@@ -206,7 +182,7 @@ class Runner {
     Render render_with_progress(const std::string& scene, const RenderSettings& settings,
                                 const std::string& label) {
         bar_->label(matrix_.name + ": " + label);
-        const double samples = FrameJob{{}, settings}.samples();
+        const double samples = traced_samples(settings);
         Render result = render(scenes_.at(scene), settings, [&](double done) {
             return bar_->update((done_samples_ + done * samples) / total_samples_);
         });
@@ -216,21 +192,21 @@ class Runner {
 
     nlohmann::json reference_json(const Cell& cell) const {
         const RenderSettings s = reference_settings(matrix_, cell);
-        return nlohmann::json::parse(settings_key(cell.scene, s));
+        return frame_json(cell.scene, s);
     }
 
     const StoredReference& reference_of(const Cell& cell) {
         RenderSettings settings = reference_settings(matrix_, cell);
         const std::string key =
-            settings_key(cell.scene, settings) + scene_hashes_.at(cell.scene) + build_;
+            frame_key(cell.scene, settings) + scene_hashes_.at(cell.scene) + build_;
         return references_.get(key, stem(cell.scene), [&] {
-            settings.planes = {Plane::radiance};
+            settings.planes = reference_planes();
             return render_with_progress(cell.scene, settings, stem(cell.scene) + " reference")
-                .frame.radiance;
+                .frame;
         });
     }
 
-    TimedFrame trace(const FrameJob& job) {
+    Render trace(const FrameJob& job) {
         const Cell& first = *job.cells.front();
         const std::string label = first.name;
         std::vector<double> scene_s;
@@ -245,85 +221,38 @@ class Runner {
         }
         result.statistics.scene_s = median(scene_s);
         result.statistics.trace_s = median(trace_s);
-        return {std::move(result.frame), result.statistics};
+        return result;
     }
 
     void run_job(const FrameJob& job) {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
-        const StoredReference& reference = reference_of(*job.cells.front());
-        const TimedFrame traced = trace(job);
-        for (const Cell* cell : job.cells) run_cell(*cell, traced, reference);
+        CellInput input{nullptr, &reference_of(*job.cells.front()), matrix_.repeat};
+        Render traced;
+        if (job.traces) {
+            traced = trace(job);
+            input.traced = &traced;
+        }
+        for (const Cell* cell : job.cells) run_cell(*cell, input);
     }
 
-    void run_cell(const Cell& cell, const TimedFrame& traced, const StoredReference& reference) {
+    void run_cell(const Cell& cell, const CellInput& input) {
         nlohmann::json row{{"cell", cell.name},
                            {"group", cell.group},
+                           {"against", cell.against},
                            {"scene", stem(cell.scene)},
                            {"method", cell.method()},
                            {"seed", cell.settings.seed},
                            {"params", cell.parameters_json()},
-                           {"samples_ratio", cell.samples_ratio},
+                           {"samples_ratio", cell.samples_ratio()},
                            {"reference", reference_json(cell)},
-                           {"reference_file", reference.file},
+                           {"reference_file", input.reference->file},
                            {"scene_hash", scene_hashes_.at(cell.scene)},
                            {"build", build_},
-                           {"host", run_["versions"]["cpu"]},
-                           {"threads", traced.statistics.threads}};
-        try {
-            measure(cell, traced, reference.image, row);
-        } catch (const Error& error) {
-            row["status"] = "failed";
-            row["reason"] = error.what();
-        }
+                           {"host", run_["versions"]["cpu"]}};
+        row.update(cell_result(cell, input, directory_));
         directory_.append(row);
         rows_[cell.name] = row;
         ++done_cells_;
-    }
-
-    Reconstruction reconstruct_timed(const Cell& cell, const Frame& low, double& seconds) const {
-        std::vector<double> times;
-        Reconstruction result;
-        for (int i = 0; i < matrix_.repeat; ++i) {
-            const Stopwatch watch;
-            result = reconstruct(low, *cell.scheme, {cell.settings.size, cell.parameters, 0});
-            times.push_back(watch.seconds());
-            if (times.back() > kRepeatBelow_s) break;
-        }
-        seconds = median(times);
-        return result;
-    }
-
-    void measure(const Cell& cell, const TimedFrame& traced, const Image& reference,
-                 nlohmann::json& row) const {
-        const RenderStatistics& s = traced.statistics;
-        double reconstruct_s = 0;
-        Reconstruction built;
-        if (cell.scheme == nullptr) {
-            built.image = traced.frame.radiance;
-        } else {
-            built = reconstruct_timed(cell, traced.frame, reconstruct_s);
-        }
-        const Comparison comparison = compare(built.image, reference);
-        const std::string folder = "cells/" + cell.name;
-        const Stopwatch write_watch;
-        save_image(built.image, directory_.file_in(folder, "image.exr"));
-        const double write_s = write_watch.seconds();
-        save_image(built.image, directory_.file_in(folder, "image.png"));
-        save_image(difference(built.image, reference), directory_.file_in(folder, "error.exr"));
-        row["metrics"] = comparison_json(comparison);
-        row["time_s"] = {{"scene", s.scene_s},
-                         {"trace", s.trace_s},
-                         {"reconstruct", reconstruct_s},
-                         {"write", write_s},
-                         {"total", s.scene_s + s.trace_s + reconstruct_s + write_s}};
-        row["counts"] = {{"samples", s.samples},
-                         {"rays", s.rays},
-                         {"dropped_samples", s.dropped_samples + built.dropped_samples},
-                         {"fallback_pixels", built.fallback_pixels},
-                         {"non_finite_pixels", built.non_finite_pixels}};
-        const bool finite = comparison.non_finite.count == 0 && built.non_finite_pixels == 0;
-        row["status"] = finite ? "ok" : "failed";
-        if (!finite) row["reason"] = "non-finite pixels";
     }
 
     void write_results() const {
@@ -340,7 +269,7 @@ class Runner {
         const std::time_t now = std::time(nullptr);
         std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
         run_["finished_utc"] = date;
-        run_["command"] = "vecino run " + matrix_.file;
+        run_["command"] = "vecino run " + matrix_.file + " -o " + directory_.path();
         run_["cells"] = cells_.size();
         directory_.write_run(run_);
     }
@@ -353,6 +282,7 @@ class Runner {
     std::map<std::string, nlohmann::json> old_rows_;
     std::map<std::string, nlohmann::json> rows_;
     ReferenceStore references_{directory_};
+    EqualTimeBudgets equal_time_{directory_.file("equal_time.json")};
     std::map<std::string, double> rates_;
     std::vector<PlannedCell> plan_;
     nlohmann::json run_;

@@ -4,11 +4,14 @@
 // times are medians.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "eval/seed_statistics.h"
 #include "eval/statistics.h"
 
 namespace vecino {
@@ -20,17 +23,33 @@ struct GroupSummary {
     nlohmann::json params;  ///< of the first cell
     std::size_t seeds = 0;  ///< finished ones
     std::size_t failed = 0;
+    std::vector<std::uint32_t> seeds_done;                         ///< which
     std::optional<Estimate> psnr_float_db, psnr_db, ssim, relmse;  ///< none: no finite value
-    double time_s = 0;                                             ///< total, median over seeds
+    PerRegion<std::optional<Estimate>> region_psnr_float_db;
+    std::optional<Estimate> noise_db, bias_db;  ///< parts of psnr_float_db's error, in its dB
+    double time_s = 0;                          ///< total, median over seeds
+    std::vector<double> times_s;                ///< total, by seed
     double reconstruct_s = 0;
-    double time_share = 0;  ///< of plain path tracing's on the same scene; 0 when that is not there
+    std::string against;    ///< the group of path tracing that its time is a share of
+    double time_share = 0;  ///< 0 when that is not there
     double samples_ratio = 0;
     std::size_t fallback_pixels = 0;  ///< of the first seed
+    std::size_t dropped_samples = 0;  ///< over all seeds
+    std::optional<SeedStatisticsByRegion> statistics;
     std::vector<std::string> cells;
+
+    /// Of a region by name, or of the whole image (""). Null without finished images.
+    [[nodiscard]] const SeedStatistics* statistics_of(const std::string& region) const;
 };
 
+using StatisticsByGroup = std::map<std::string, SeedStatisticsByRegion>;
+
 /// Groups in the order in which their first cells stand in rows (of results.jsonl).
-std::vector<GroupSummary> summarise(const std::vector<nlohmann::json>& rows);
+std::vector<GroupSummary> summarise(const std::vector<nlohmann::json>& rows,
+                                    const StatisticsByGroup& statistics = {});
+
+/// {"mean":, "low":, "high":}, null for none.
+nlohmann::json estimate_json(const std::optional<Estimate>& estimate);
 
 nlohmann::json summary_json(const GroupSummary& group);
 

@@ -14,6 +14,7 @@ inline nlohmann::json result_row(const std::string& method, int seed) {
     return {
         {"cell", group + ".s" + std::to_string(seed)},
         {"group", group},
+        {"against", "box.path"},
         {"scene", "box"},
         {"method", method},
         {"seed", seed},

@@ -49,7 +49,7 @@ struct TinyRun {
         return load_image(directory + "/" + data.rows[0]["reference_file"].get<std::string>() +
                           ".exr");
     }
-    [[nodiscard]] std::string page() const { return read_file(write_report(directory)); }
+    [[nodiscard]] std::string page() const { return read_file(write_report(read_report_data(directory))); }
     [[nodiscard]] std::string cell(const std::string& name) const {
         return directory + "/cells/" + kOddScene + "." + name + "/";
     }
@@ -61,7 +61,7 @@ std::string page_of(const std::vector<nlohmann::json>& rows) {
     std::string lines;
     for (const nlohmann::json& row : rows) lines += row.dump() + "\n";
     temp.write("results.jsonl", lines);
-    return read_file(write_report(temp.path("")));
+    return read_file(write_report(read_report_data(temp.path(""))));
 }
 
 bool has(const std::string& text, const std::string& part) {
@@ -100,7 +100,7 @@ std::string table_head(const std::string& page) {
 
 TEST_CASE("a report stands in its run directory and holds every group", "[report]") {
     const TinyRun run;
-    CHECK(write_report(run.directory) == run.directory + "/report.html");
+    CHECK(write_report(read_report_data(run.directory)) == run.directory + "/report.html");
     const std::string page = read_file(run.directory + "/report.html");
     for (const char* group : {".path", ".nearest.f2", ".mean.f2.w3"}) {
         CAPTURE(group);
@@ -112,7 +112,7 @@ TEST_CASE("a report stands in its run directory and holds every group", "[report
 TEST_CASE("a report goes where it is asked to", "[report]") {
     const TinyRun run;
     const std::string elsewhere = run.temp.path("other.html");
-    CHECK(write_report(run.directory, elsewhere) == elsewhere);
+    CHECK(write_report(read_report_data(run.directory), elsewhere) == elsewhere);
     CHECK(has(read_file(elsewhere), "</html>"));
     CHECK_FALSE(std::filesystem::exists(run.directory + "/report.html"));
 }
@@ -120,13 +120,14 @@ TEST_CASE("a report goes where it is asked to", "[report]") {
 TEST_CASE("the data in a report are JSON with a record of every group", "[report]") {
     const TinyRun run;
     const nlohmann::json data = embedded_data(run.page());
-    REQUIRE(data["groups"].size() == 3);
+    REQUIRE(data["groups"].size() == 4);  // with the ceiling
     CHECK(data["groups"][0]["group"] == kOddScene + ".path");
-    CHECK(data["groups"][2]["group"] == kOddScene + ".mean.f2.w3");
-    CHECK(data["groups"][1]["seeds"] == 2);
-    CHECK(data["groups"][1]["psnr_float_db"]["mean"].get<double>() > 0);
+    CHECK(data["groups"][1]["group"] == kOddScene + ".blocky_ceiling.f2");
+    CHECK(data["groups"][3]["group"] == kOddScene + ".mean.f2.w3");
+    CHECK(data["groups"][2]["seeds"] == 2);
+    CHECK(data["groups"][2]["psnr_float_db"]["mean"].get<double>() > 0);
     CHECK(data["scenes"] == nlohmann::json{kOddScene});
-    CHECK(data["methods"].size() == 3);
+    CHECK(data["methods"].size() == 4);
 }
 
 TEST_CASE("methods differ in shape and in colour", "[report]") {
@@ -165,13 +166,13 @@ TEST_CASE("no name in a run can add to a report's HTML", "[report]") {
     CHECK(has(page, "box&lt;b onload=&quot;x&quot;&gt;&amp;&#39;"));
     CHECK(has(page, "<h1>&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt;</h1>"));
     // The data, Chart.js and the page's own script.
-    CHECK(count(page, "<script") == 3);
-    CHECK(count(page, "</script") == 3);
+    CHECK(count(page, "<script") == 4);
+    CHECK(count(page, "</script") == 4);
 }
 
 TEST_CASE("every cell with an image gets both error maps, and nothing else", "[report]") {
     const TinyRun run;
-    write_report(run.directory);
+    write_report(read_report_data(run.directory));
     for (const char* name : {"path.s1", "path.s2", "nearest.f2.s1", "nearest.f2.s2",
                              "mean.f2.w3.s1", "mean.f2.w3.s2"}) {
         CAPTURE(name);
@@ -179,7 +180,7 @@ TEST_CASE("every cell with an image gets both error maps, and nothing else", "[r
         for (const auto& entry : std::filesystem::directory_iterator(run.cell(name))) {
             files.insert(entry.path().filename().string());
         }
-        CHECK(files == std::set<std::string>{"error.exr", "error.png", "error_signed.png",
+        CHECK(files == std::set<std::string>{"error.png", "error_signed.png",
                                              "image.exr", "image.png"});
         CHECK(load_image(run.cell(name) + "error.png").size().width > 384);
     }
@@ -209,7 +210,7 @@ TEST_CASE("a report shows the image and the bare maps of the first seed of each 
     const TinyRun run;
     const ReportData data = read_report_data(run.directory);
     const ReportPictures pictures = make_report_pictures(data);
-    REQUIRE(pictures.by_group.size() == 3);
+    REQUIRE(pictures.by_group.size() == 4);
     const GroupPictures& shown = pictures.by_group.at(kOddScene + ".mean.f2.w3");
     REQUIRE(shown.cell == kOddScene + ".mean.f2.w3.s1");
     CHECK(shown.image == png_url(read_file(run.cell("mean.f2.w3.s1") + "image.png")));
@@ -263,12 +264,12 @@ TEST_CASE("cells without images are reported without pictures", "[report]") {
 
 TEST_CASE("a report needs results, and says which file lacks them", "[report]") {
     const TempDir temp;
-    const auto missing = error_of([&] { write_report(temp.path("nowhere")); });
+    const auto missing = error_of([&] { read_report_data(temp.path("nowhere")); });
     CHECK(missing.code() == ExitCode::file);
     CHECK(has(missing.what(), "nowhere/results.jsonl"));
 
     temp.write("results.jsonl", "\n");
-    const auto empty = error_of([&] { write_report(temp.path("")); });
+    const auto empty = error_of([&] { write_report(read_report_data(temp.path(""))); });
     CHECK(empty.code() == ExitCode::file);
     CHECK(has(empty.what(), "holds no results"));
     CHECK_FALSE(std::filesystem::exists(temp.path("report.html")));
@@ -296,7 +297,7 @@ TEST_CASE("the command in a report names its matrix and its directory", "[report
     const TempDir temp;
     temp.write("results.jsonl", result_row("path", 1).dump() + "\n");
     temp.write("run.json", R"({"command": "vecino run configs/a.json", "cells": 5})");
-    const std::string page = read_file(write_report(temp.path(".")));
+    const std::string page = read_file(write_report(read_report_data(temp.path("."))));
     CHECK(has(page, "vecino run configs/a.json -o " + temp.path(".")));
     CHECK(has(page, "1 of 5 so far"));
 }

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/axes.h"
+
+#include <algorithm>
+
+#include "eval/budget.h"
+#include "eval/render_options.h"
+#include "filters/schemes.h"
+
+namespace vecino {
+namespace {
+
+constexpr std::string_view kMethods[] = {"path"};
+
+void require_one_of(std::span<const std::string_view> names, const JsonValue& value) {
+    if (std::ranges::find(names, value.string()) == names.end()) value.fail(join(names));
+}
+
+void require_option(const std::string& key, const JsonValue& value) {
+    RenderSettings settings;
+    SchemeParameters parameters;
+    for (const RenderOption& row : render_options()) {
+        if (row.name == key) row.set(settings, value);
+    }
+    for (const SchemeOption& row : scheme_options()) {
+        if (row.name == key) row.set(parameters, value);
+    }
+}
+
+}  // namespace
+
+std::vector<std::string_view> cell_keys() {
+    std::vector<std::string_view> keys{"scene", "scheme", "method", "budget"};
+    for (const RenderOption& row : render_options()) keys.push_back(row.name);
+    for (const SchemeOption& row : scheme_options()) keys.push_back(row.name);
+    return keys;
+}
+
+std::span<const std::string_view> all_methods() {
+    return kMethods;
+}
+
+void require_cell_value(const std::string& key, const JsonValue& value) {
+    if (key == "scene") {
+        (void)value.string();
+    } else if (key == "scheme") {
+        std::vector<std::string_view> names;
+        for (const Scheme& scheme : all_schemes()) names.push_back(scheme.name);
+        require_one_of(names, value);
+    } else if (key == "method") {
+        require_one_of(kMethods, value);
+    } else if (key == "budget") {
+        (void)budget_of(value);
+    } else {
+        require_option(key, value);
+    }
+}
+
+std::vector<JsonValue> listed(const std::string& key, const JsonValue& value) {
+    const bool one_size = key == "size" && value.raw().is_array() && !value.raw().empty() &&
+                          !value.raw().front().is_array();
+    if (one_size || !value.raw().is_array()) return {value};
+    auto values = value.elements();
+    if (values.empty()) value.fail("at least one value");
+    return values;
+}
+
+Axes read_axes(const JsonValue& json) {
+    json.require_keys(cell_keys());
+    Axes axes;
+    for (const auto& [key, value] : json.members()) {
+        for (const JsonValue& each : listed(key, value)) require_cell_value(key, each);
+        axes.insert_or_assign(key, listed(key, value));
+    }
+    if (axes.contains("method") && axes.contains("scheme")) {
+        json.fail("both \"method\" and \"scheme\"", "one of them: a cell has either");
+    }
+    return axes;
+}
+
+bool is_scheme_key(const std::string& key) {
+    if (key == "scheme" || key == "budget" || key == "reduction") return true;
+    return std::ranges::any_of(scheme_options(),
+                               [&](const SchemeOption& row) { return row.name == key; });
+}
+
+}  // namespace vecino

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The result of one cell: its image rebuilt, timed, held against the reference and kept.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/render.h"
+#include "eval/matrix.h"
+#include "eval/reference_store.h"
+#include "eval/run_directory.h"
+
+namespace vecino {
+
+// A stage that takes longer than this averages its own noise, and is timed once.
+constexpr double kRepeatBelow_s = 0.5;
+
+/// What the cells of a frame share.
+struct CellInput {
+    const Render* traced = nullptr;  ///< times are medians; null for ceilings
+    const StoredReference* reference = nullptr;
+    int repeat = 1;  ///< timings of the reconstruction, unless it takes long
+};
+
+/// Makes the cell's image, saves it in the run directory and returns "status", "metrics", "time_s"
+/// and "counts" of its row. A cell that fails gets status "failed" and a "reason".
+nlohmann::json cell_result(const Cell& cell, const CellInput& input, const RunDirectory& directory);
+
+}  // namespace vecino

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/equal_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "core/files.h"
+#include "core/timing.h"
+#include "eval/frame_jobs.h"
+#include "eval/run_directory.h"
+
+namespace vecino {
+namespace {
+
+// Long enough that a render's rate is steady, short beside the frames themselves.
+constexpr double kRender_s = 0.3;
+constexpr int kRounds = 5;
+
+/// What the answer depends on: all but the answer itself and the seed.
+nlohmann::json question(const Cell& cell) {
+    nlohmann::json json = cell.parameters_json();
+    json.erase("spp");
+    json.erase("seed");
+    return json;
+}
+
+RenderSettings path_settings(const Cell& cell) {
+    RenderSettings settings = cell.settings;
+    settings.reduction = 1;
+    settings.spp = 1;
+    settings.planes = {Plane::radiance};
+    return settings;
+}
+
+RenderSettings low_settings(const Cell& cell) {
+    RenderSettings settings = path_settings(cell);
+    settings.reduction = cell.settings.reduction;
+    settings.planes = planes_read_by(cell);
+    return settings;
+}
+
+double trace_s(const Scene& scene, const RenderSettings& settings) {
+    return render(scene, settings).statistics.trace_s;
+}
+
+/// As many samples per pixel as take about kRender_s.
+int calibration_spp(const Scene& scene, RenderSettings settings) {
+    settings.spp = 1;
+    while (settings.spp < (1 << 20)) {
+        const double seconds = trace_s(scene, settings);
+        if (seconds > kRender_s / 4)
+            return std::max(1, static_cast<int>(settings.spp * kRender_s / seconds));
+        settings.spp *= 4;
+    }
+    return settings.spp;
+}
+
+double reconstruct_s(const Scene& scene, const Cell& cell) {
+    const Frame low = render(scene, low_settings(cell)).frame;
+    std::vector<double> times;
+    for (int i = 0; i < kRounds; ++i) {
+        const Stopwatch watch;
+        (void)reconstruct(low, *cell.scheme, {cell.settings.size, cell.parameters, 0});
+        times.push_back(watch.seconds());
+    }
+    return median(times);
+}
+
+}  // namespace
+
+EqualTimeBudgets::EqualTimeBudgets(std::string path) : path_(std::move(path)) {
+    if (!std::filesystem::exists(path_)) return;
+    auto read = nlohmann::json::parse(read_file(path_), nullptr, false);
+    if (read.is_object()) entries_ = std::move(read);
+}
+
+std::optional<int> EqualTimeBudgets::spp(const Cell& cell) const {
+    const auto entry = entries_.find(cell.group);
+    if (entry == entries_.end() || !entry->is_object()) return std::nullopt;
+    const nlohmann::json spp = entry->value("spp", nlohmann::json());
+    const bool is_same = entry->value("question", nlohmann::json()) == question(cell);
+    if (!is_same || !spp.is_number_integer() || spp < 1) return std::nullopt;
+    return spp.get<int>();
+}
+
+std::optional<int> EqualTimeBudgets::spp(const Cell& cell, const std::string& build) const {
+    const auto found = spp(cell);
+    if (found && entries_[cell.group].value("build", "") != build) return std::nullopt;
+    return found;
+}
+
+void EqualTimeBudgets::put(const Cell& cell, const std::string& build, int spp) {
+    entries_[cell.group] = {{"spp", spp}, {"question", question(cell)}, {"build", build}};
+    write_text_file(path_, entries_.dump(1) + "\n");
+}
+
+int measure_equal_time_spp(const Scene& scene, const Cell& cell) {
+    RenderSettings path = path_settings(cell);
+    RenderSettings low = low_settings(cell);
+    path.spp = calibration_spp(scene, path);
+    low.spp = calibration_spp(scene, low);
+    std::vector<double> path_times;
+    std::vector<double> low_times;
+    for (int i = 0; i < kRounds; ++i) {  // in turn, so that a slow moment meets both
+        path_times.push_back(trace_s(scene, path));
+        low_times.push_back(trace_s(scene, low));
+    }
+    const double path_s = median(path_times) / path.spp * cell.spp_asked;
+    const double low_s_per_spp = median(low_times) / low.spp;
+    const double spp = std::round((path_s - reconstruct_s(scene, cell)) / low_s_per_spp);
+    return static_cast<int>(std::clamp(spp, 1.0, double{std::numeric_limits<int>::max()}));
+}
+
+}  // namespace vecino

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The budget "equal_time": as many samples as take path tracing's time. Measured on this machine
+// before the first frame and kept in the run directory (equal_time.json), so that all seeds and a
+// resumed run use the same.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "core/scene.h"
+#include "eval/matrix.h"
+
+namespace vecino {
+
+class EqualTimeBudgets {
+  public:
+    /// Reads the file if it is there.
+    explicit EqualTimeBudgets(std::string path);
+
+    /// Of the cell's group, if it was measured for the same question.
+    [[nodiscard]] std::optional<int> spp(const Cell& cell) const;
+    /// The same, measured by this build of the program too.
+    [[nodiscard]] std::optional<int> spp(const Cell& cell, const std::string& build) const;
+    /// Keeps it, in the file.
+    void put(const Cell& cell, const std::string& build, int spp);
+
+  private:
+    std::string path_;
+    nlohmann::json entries_ = nlohmann::json::object();
+};
+
+/// Measures path tracing and the cell's own frame in turn, in renders of a fraction of a second,
+/// and its reconstruction; from their rates follows how many samples per low-resolution pixel take
+/// as long as path tracing with cell.spp_asked. At least 1. Precondition: the cell is a scheme's.
+int measure_equal_time_spp(const Scene& scene, const Cell& cell);
+
+}  // namespace vecino

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/frame_jobs.h"
+
+#include <map>
+
+#include "eval/render_options.h"
+
+namespace vecino {
+namespace {
+
+/// Ceilings of one scene stand together; what is traced for them is their reference.
+std::string job_key(const Cell& cell) {
+    if (cell.kind == CellKind::blocky_ceiling) return cell.scene + " ceilings";
+    return frame_json(cell.scene, cell.settings).dump();
+}
+
+}  // namespace
+
+double FrameJob::samples() const {
+    if (!traces) return 0;
+    return static_cast<double>(reduced(settings.size, settings.reduction).area()) * settings.spp;
+}
+
+std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan) {
+    std::vector<FrameJob> jobs;
+    std::map<std::string, std::size_t> by_key;
+    for (const PlannedCell& planned : plan) {
+        if (!planned.run) continue;
+        const Cell& cell = *planned.cell;
+        const auto [entry, is_new] = by_key.try_emplace(job_key(cell), jobs.size());
+        if (is_new) {
+            jobs.push_back({{}, cell.settings, cell.kind != CellKind::blocky_ceiling});
+            jobs.back().settings.planes = {};
+        }
+        FrameJob& job = jobs[entry->second];
+        job.settings.planes.add(planes_read_by(cell));
+        job.cells.push_back(&cell);
+    }
+    return jobs;
+}
+
+Planes planes_read_by(const Cell& cell) {
+    Planes planes{Plane::radiance};
+    if (cell.scheme == nullptr) return planes;
+    planes.add(cell.scheme->needs);
+    if (cell.scheme->needs.has(Plane::position)) planes.add(Plane::id);  // tells misses apart
+    return planes;
+}
+
+nlohmann::json frame_json(const std::string& scene, const RenderSettings& settings) {
+    nlohmann::json json{{"scene", scene}};
+    for (const RenderOption& row : render_options())
+        json[std::string(row.name)] = row.get(settings);
+    return json;
+}
+
+}  // namespace vecino

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The work of a run, by the frame that cells read: each is traced once and shared.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "eval/matrix.h"
+#include "eval/run_plan.h"
+
+namespace vecino {
+
+/// A frame and the cells that read it; or ceilings, which need no frame but their reference.
+struct FrameJob {
+    std::vector<const Cell*> cells;
+    RenderSettings settings;
+    bool traces = true;
+
+    [[nodiscard]] double samples() const;  ///< to trace
+};
+
+/// What is to do, by frame, in the order of the cells. A frame has the planes that some scheme
+/// reads, and no other.
+std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan);
+
+/// The planes of a frame that a cell needs.
+Planes planes_read_by(const Cell& cell);
+
+/// Everything that decides a frame but its planes: for results, and to tell frames apart.
+nlohmann::json frame_json(const std::string& scene, const RenderSettings& settings);
+
+}  // namespace vecino

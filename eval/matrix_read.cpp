@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Reading of matrix files; their expansion into cells is in matrix.cpp.
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "eval/axes.h"
+#include "eval/matrix.h"
+#include "eval/render_options.h"
+#include "eval/reproduction_spec.h"
+
+namespace vecino {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::string_view kReferenceKeys[] = {"spp", "light_sampling", "sampler", "seed"};
+constexpr std::string_view kParts[] = {"axes", "fixed", "reference", "measure"};
+
+RenderSettings read_reference(const JsonValue& json) {
+    json.require_keys(kReferenceKeys);
+    RenderSettings settings;
+    for (const RenderOption& row : render_options()) {
+        const bool known = std::ranges::find(kReferenceKeys, row.name) != std::end(kReferenceKeys);
+        if (known && json.has(row.name)) row.set(settings, json.at(row.name));
+    }
+    return settings;
+}
+
+int read_repeat(const JsonValue& json) {
+    json.require_keys({"repeat"});
+    return json.has("repeat") ? json.at("repeat").integer(1, 1000) : 1;
+}
+
+void check_fixed(const JsonValue& json) {
+    json.require_keys(cell_keys());
+    for (const auto& [key, value] : json.members()) require_cell_value(key, value);
+}
+
+void check_cells(const JsonValue& json) {
+    if (json.has("fixed")) check_fixed(json.at("fixed"));
+    (void)read_axes(json.at("axes"));
+    for (const char* key : {"exclude", "include"}) {
+        if (!json.has(key)) continue;
+        for (const JsonValue& each : json.at(key).elements()) (void)read_axes(each);
+    }
+}
+
+Matrix check(Json document, const std::string& file) {
+    Matrix matrix;
+    matrix.file = file;
+    matrix.document = std::move(document);
+    const JsonValue json(matrix.document, file);
+    json.require_keys({"$schema", "extends", "name", "axes", "exclude", "include", "fixed",
+                       "reference", "measure", "reproduction"});
+    if (json.has("$schema")) (void)json.at("$schema").string();
+    matrix.name = json.at("name").string();
+    matrix.reference = read_reference(json.at("reference"));
+    if (json.has("measure")) matrix.repeat = read_repeat(json.at("measure"));
+    check_cells(json);
+    if (json.has("reproduction")) (void)read_reproduction(json);
+    return matrix;
+}
+
+/// Scene paths are relative to the file that they stand in: once they stand in another one, they
+/// have to lead to the same place.
+void move_scenes(Json& json, const fs::path& from, const fs::path& to) {
+    if (json.is_array()) {
+        for (Json& each : json) move_scenes(each, from, to);
+    } else if (json.is_object() && json.contains("scene")) {
+        const auto moved = [&](const Json& scene) {
+            return (from / scene.get<std::string>()).lexically_proximate(to).generic_string();
+        };
+        Json& scene = json["scene"];
+        if (!scene.is_array()) scene = moved(scene);
+        if (!scene.is_array()) return;
+        for (Json& each : scene) each = moved(each);
+    }
+}
+
+/// What the file says, over what it extends: the parts of kParts key by key, the rest as a whole.
+Json merged(Json base, const Json& own) {
+    for (const auto& [key, value] : own.items()) {
+        const bool is_part = std::ranges::find(kParts, key) != std::end(kParts);
+        if (is_part && base.contains(key) && value.is_object()) {
+            base[key].update(value);
+        } else if (key != "extends") {
+            base[key] = value;
+        }
+    }
+    return base;
+}
+
+Matrix load(const std::string& path, std::vector<std::string>& opened) {
+    const Json own = parse_json_file(path);
+    const JsonValue json(own, path);
+    if (!own.is_object() || !json.has("extends")) return check(own, path);
+    (void)json.at("name").string();
+    const fs::path folder = fs::path(path).parent_path();
+    const std::string base_path =
+        (folder / json.at("extends").string()).lexically_normal().string();
+    opened.push_back(fs::path(path).lexically_normal().string());
+    if (std::ranges::find(opened, base_path) != opened.end())
+        json.at("extends").fail("a matrix that does not lead back to this one");
+    Json base = load(base_path, opened).document;
+    for (const char* key : {"axes", "fixed", "exclude", "include"}) {
+        if (base.contains(key)) move_scenes(base[key], fs::path(base_path).parent_path(), folder);
+    }
+    return check(merged(std::move(base), own), path);
+}
+
+}  // namespace
+
+Matrix load_matrix(const std::string& path) {
+    std::vector<std::string> opened;
+    return load(path, opened);
+}
+
+}  // namespace vecino

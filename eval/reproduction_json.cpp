@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "eval/reproduction.h"
+
+namespace vecino {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string outcome_text(Outcome outcome) {
+    switch (outcome) {
+        case Outcome::holds:
+            return "holds";
+        case Outcome::fails:
+            return "fails";
+        case Outcome::open:
+            return "open";
+        case Outcome::missing:
+            break;
+    }
+    return "missing";
+}
+
+Json pair_json(const PairResult& pair) {
+    Json json{{"of", pair.of}, {"than", pair.than}, {"outcome", outcome_text(pair.outcome)}};
+    if (pair.outcome != Outcome::missing) json["difference_db"] = estimate_json(pair.difference_db);
+    return json;
+}
+
+Json claim_json(const ClaimResult& result) {
+    Json json{{"variant", result.variant},
+              {"region", result.region.empty() ? "whole" : result.region},
+              {"verdict", verdict_text(result.verdict)},
+              {"holds", result.holds},
+              {"fails", result.fails},
+              {"open", result.open},
+              {"missing", result.missing},
+              {"pairs", Json::array()}};
+    for (const PairResult& pair : result.pairs) json["pairs"].push_back(pair_json(pair));
+    return json;
+}
+
+}  // namespace
+
+Json reproduction_json(const Reproduction& specification, const ReproductionResult& result) {
+    Json json{{"items", Json::array()}, {"claims", Json::array()}};
+    for (std::size_t i = 0; i < specification.items.size(); ++i) {
+        const Item& item = specification.items[i];
+        const ItemResult& found = result.items[i];
+        json["items"].push_back({{"id", item.id},
+                                 {"published", item.published},
+                                 {"unit", item.unit},
+                                 {"ours", estimate_json(found.ours)},
+                                 {"verdict", verdict_text(found.verdict)},
+                                 {"slowest", found.slowest},
+                                 {"remark", found.remark}});
+    }
+    for (std::size_t i = 0; i < specification.claims.size(); ++i) {
+        Json results = Json::array();
+        for (const ClaimResult& each : result.claims[i]) results.push_back(claim_json(each));
+        json["claims"].push_back({{"id", specification.claims[i].id}, {"results", results}});
+    }
+    return json;
+}
+
+}  // namespace vecino

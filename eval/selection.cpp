@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/selection.h"
+
+#include <algorithm>
+
+#include "eval/axes.h"
+#include "eval/matrix.h"
+#include "eval/render_options.h"
+
+namespace vecino {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<std::string_view> method_names() {
+    std::vector<std::string_view> names{"blocky_ceiling"};
+    for (const std::string_view method : all_methods()) names.push_back(method);
+    for (const Scheme& scheme : all_schemes()) names.push_back(scheme.name);
+    return names;
+}
+
+/// As the value stands in a result's params.
+Json canonical(const std::string& key, const JsonValue& value) {
+    if (key == "method") {
+        const auto names = method_names();
+        if (std::ranges::find(names, value.string()) == names.end()) value.fail(join(names));
+        return value.raw();
+    }
+    require_cell_value(key, value);
+    for (const RenderOption& row : render_options()) {
+        RenderSettings settings;
+        if (row.name != key) continue;
+        row.set(settings, value);
+        return row.get(settings);
+    }
+    for (const SchemeOption& row : scheme_options()) {
+        SchemeParameters parameters;
+        if (row.name != key || key == "window") continue;
+        row.set(parameters, value);
+        return row.slug(parameters);
+    }
+    return value.raw();
+}
+
+bool holds(const std::vector<Json>& values, const Json& value) {
+    return std::ranges::find(values, value) != values.end();
+}
+
+}  // namespace
+
+Selection Selection::read(const JsonValue& json) {
+    auto keys = cell_keys();
+    std::erase(keys, "scheme");
+    json.require_keys(keys);
+    Selection selection;
+    for (const auto& [key, value] : json.members()) {
+        for (const JsonValue& each : listed(key, value))
+            selection.values_[key].push_back(canonical(key, each));
+    }
+    return selection;
+}
+
+Json selected_value(const Json& params, const std::string& key) {
+    if (key == "scene") return stem(params.value("scene", ""));
+    return params.value(key == "spp" ? "spp_asked" : key, Json());
+}
+
+bool Selection::matches(const Json& params) const {
+    return std::ranges::all_of(values_, [&](const auto& entry) {
+        return holds(entry.second, selected_value(params, entry.first));
+    });
+}
+
+bool Selection::matches(const Json& params, const Selection& where) const {
+    const auto fits = [&](const auto& entry) {
+        const Json value = selected_value(params, entry.first);
+        return names(entry.first) || value.is_null() || holds(entry.second, value);
+    };
+    return matches(params) && std::ranges::all_of(where.values_, fits);
+}
+
+std::vector<Json> Selection::at(const std::string& key) const {
+    const auto found = values_.find(key);
+    return found == values_.end() ? std::vector<Json>{} : found->second;
+}
+
+Selection Selection::without(const std::string& key) const {
+    Selection rest = *this;
+    rest.values_.erase(key);
+    return rest;
+}
+
+void Selection::add_missing(const Selection& other) {
+    values_.insert(other.values_.begin(), other.values_.end());
+}
+
+}  // namespace vecino
