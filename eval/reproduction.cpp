@@ -5,20 +5,33 @@
 #include <cmath>
 #include <set>
 
+#include "eval/axes.h"
+
 namespace vecino {
 namespace {
 
 constexpr const char* kSceneKey = "scene";
-// Results of a pair agree in these, unless a selection of theirs names one.
-constexpr const char* kAgreeing[] = {kSceneKey, "method", "reduction", "window"};
 
+/// Results of a pair are of one scene, and agree in all else that both have, unless a selection of
+/// theirs names it. A group's seed is that of its first cell and says nothing.
 bool agree(const GroupSummary& a, const GroupSummary& b, const ClaimTest& test) {
-    return std::ranges::all_of(kAgreeing, [&](const std::string key) {
+    return std::ranges::all_of(cell_keys(), [&](const std::string_view name) {
+        const std::string key(name);
         const bool is_free = key != kSceneKey && (test.of.names(key) || test.than.names(key));
+        if (is_free || key == "seed") return true;
         const auto x = selected_value(a.params, key);
         const auto y = selected_value(b.params, key);
-        return is_free || x.is_null() || y.is_null() || x == y;
+        return x.is_null() || y.is_null() || x == y;
     });
+}
+
+/// What a selection says about renders alone: path tracing reads nothing else.
+Selection render_part(Selection selection) {
+    for (const std::string_view name : cell_keys()) {
+        const std::string key(name);
+        if (key == "method" || is_scheme_key(key)) selection = selection.without(key);
+    }
+    return selection;
 }
 
 /// Mean squared errors, or variances, by seed.
@@ -69,7 +82,7 @@ class Evaluation {
         ClaimResult result;
         result.variant = variant.id;
         result.region = region;
-        for (const ClaimTest& test : claim.tests) run_test(test, variant, result);
+        for (const ClaimTest& test : claim.tests) run_test(test, variant, claim.any, result);
         if (claim.any) {
             count_scenes(result);
         } else {
@@ -98,16 +111,20 @@ class Evaluation {
     }
 
   private:
-    void run_test(const ClaimTest& test, const Variant& variant, ClaimResult& result) const {
+    void run_test(const ClaimTest& test, const Variant& variant, bool is_any,
+                  ClaimResult& result) const {
         const bool own_regions = !test.of_region.empty();
         const Place place{own_regions ? test.of_region : result.region,
                           own_regions ? test.than_region : result.region};
+        const std::size_t before = result.pairs.size();
         for (const GroupSummary* of : select(groups_, test.of, variant)) {
             for (const GroupSummary* than : select(groups_, test.than, variant)) {
                 if (!agree(*of, *than, test)) continue;
                 result.pairs.push_back(compare_pair(*of, *than, test, place));
             }
         }
+        // What the other tests say is not the whole claim, unless any of them is enough.
+        if (!is_any && result.pairs.size() == before) ++result.missing;
     }
 
     static void count(ClaimResult& result, Outcome outcome) {
@@ -157,17 +174,10 @@ class Evaluation {
         return found == groups.end() || (*found)->seeds == 0 ? nullptr : *found;
     }
 
-    /// The slowest path tracing of the same scenes.
+    /// The slowest path tracing of the same scenes, rendered alike.
     const GroupSummary* slowest_path(const Item& item) const {
-        const auto scenes = item.of.at(kSceneKey);
-        std::vector<const GroupSummary*> paths;
-        for (const GroupSummary& group : groups_) {
-            const bool is_first =
-                Selection().matches(group.params, specification_.variants.front().where);
-            const bool is_asked = scenes.empty() || std::find(scenes.begin(), scenes.end(),
-                                                              group.scene) != scenes.end();
-            if (group.method == "path" && is_first && is_asked) paths.push_back(&group);
-        }
+        auto paths = select(groups_, render_part(item.of), specification_.variants.front());
+        std::erase_if(paths, [](const GroupSummary* group) { return group->method != "path"; });
         return slowest_of(paths);
     }
 

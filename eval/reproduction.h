@@ -28,7 +28,8 @@ enum class Outcome {
     holds,    ///< the 95 % interval excludes equality (or the margin)
     fails,    ///< so does it on the other side
     open,     ///< the interval includes equality
-    missing,  ///< one of both has no value, or there are fewer than 2 common seeds
+    missing,  ///< one of both has no value, or not the other's seeds, or too few: below 2 for
+              ///< quality, 3 for noise
 };
 
 /// One pair of results of a claim.
@@ -42,8 +43,8 @@ struct ClaimResult {
     std::string variant;
     RegionName region;  ///< instead of the whole image; tests that name regions keep theirs
     Verdict verdict = Verdict::not_testable;
-    std::size_t holds = 0, fails = 0, open = 0,
-                missing = 0;  ///< pairs; scenes if any one is enough
+    /// Pairs; scenes if any one is enough. A test without a pair is missing once.
+    std::size_t holds = 0, fails = 0, open = 0, missing = 0;
     std::vector<PairResult> pairs;
 };
 

@@ -23,7 +23,10 @@ std::string outcome_text(Outcome outcome) {
 }
 
 Json pair_json(const PairResult& pair) {
-    Json json{{"of", pair.of}, {"than", pair.than}, {"outcome", outcome_text(pair.outcome)}};
+    Json json{{"scene", pair.scene},
+              {"of", pair.of},
+              {"than", pair.than},
+              {"outcome", outcome_text(pair.outcome)}};
     if (pair.outcome != Outcome::missing) json["difference_db"] = estimate_json(pair.difference_db);
     return json;
 }
@@ -52,6 +55,7 @@ Json reproduction_json(const Reproduction& specification, const ReproductionResu
                                  {"published", item.published},
                                  {"unit", item.unit},
                                  {"ours", estimate_json(found.ours)},
+                                 {"ratio", found.ours ? Json(found.ratio) : Json(nullptr)},
                                  {"verdict", verdict_text(found.verdict)},
                                  {"slowest", found.slowest},
                                  {"remark", found.remark}});

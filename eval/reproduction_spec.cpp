@@ -92,6 +92,17 @@ Claim read_claim(const JsonValue& json) {
     return claim;
 }
 
+/// A share and a time are no numbers of each other's kind.
+std::string read_unit(const JsonValue& json, ItemQuantity quantity) {
+    const std::string unit = json.string();
+    if (quantity == ItemQuantity::largest_time_share) {
+        if (unit != "%") json.fail("% for a share");
+    } else if (unit != "min" && unit != "h") {
+        json.fail("min, h for a time");
+    }
+    return unit;
+}
+
 Item read_item(const JsonValue& json) {
     json.require_keys(
         {"id", "section", "text", "published", "unit", "quantity", "of", "within", "spp"});
@@ -100,12 +111,11 @@ Item read_item(const JsonValue& json) {
     item.section = json.at("section").string();
     item.text = json.at("text").string();
     item.published = json.at("published").number(kPositive);
-    item.unit = json.at("unit").string();
-    if (item.unit != "%" && item.unit != "min" && item.unit != "h")
-        json.at("unit").fail("%, min, h");
     item.quantity = value_of(kItemQuantities, json.at("quantity"));
+    item.unit = read_unit(json.at("unit"), item.quantity);
     item.of = Selection::read(json.at("of"));
-    if (json.has("within")) item.within = json.at("within").number(kPositive);
+    if (item.quantity == ItemQuantity::largest_time_share)
+        item.within = json.at("within").number(kPositive);
     if (item.quantity == ItemQuantity::extrapolated_time)
         item.spp = json.at("spp").integer(1, 2147483647);
     return item;
@@ -144,13 +154,15 @@ std::vector<Row> read_rows(const JsonValue& json, std::string_view key,
     return rows;
 }
 
-/// Fixed values of a render, as a selection. A variant that says nothing about one means it.
+/// Fixed values of a render, as a selection. A variant that says nothing about one means it. An
+/// axis takes a fixed value's place in all cells; and results are over all seeds.
 Selection fixed_selection(const JsonValue& matrix) {
     if (!matrix.has("fixed")) return {};
     nlohmann::json fixed = nlohmann::json::object();
     for (const RenderOption& row : render_options()) {
+        const bool is_axis = row.name == "seed" || matrix.at("axes").has(row.name);
         const bool given = matrix.at("fixed").has(row.name);
-        if (given) fixed[std::string(row.name)] = matrix.at("fixed").at(row.name).raw();
+        if (given && !is_axis) fixed[std::string(row.name)] = matrix.at("fixed").at(row.name).raw();
     }
     return Selection::read(JsonValue(fixed, matrix.file(), "/fixed"));
 }
