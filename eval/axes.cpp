@@ -56,6 +56,11 @@ void require_cell_value(const std::string& key, const JsonValue& value) {
     }
 }
 
+void require_one_kind(const JsonValue& json) {
+    if (json.has("method") && json.has("scheme"))
+        json.fail("both \"method\" and \"scheme\"", "one of them: a cell has either");
+}
+
 std::vector<JsonValue> listed(const std::string& key, const JsonValue& value) {
     const bool one_size = key == "size" && value.raw().is_array() && !value.raw().empty() &&
                           !value.raw().front().is_array();
@@ -72,9 +77,7 @@ Axes read_axes(const JsonValue& json) {
         for (const JsonValue& each : listed(key, value)) require_cell_value(key, each);
         axes.insert_or_assign(key, listed(key, value));
     }
-    if (axes.contains("method") && axes.contains("scheme")) {
-        json.fail("both \"method\" and \"scheme\"", "one of them: a cell has either");
-    }
+    require_one_kind(json);
     return axes;
 }
 

@@ -25,6 +25,9 @@ std::span<const std::string_view> all_methods();
 /// Throws Error(usage) unless the value may stand at that key. Precondition: key is a cell key.
 void require_cell_value(const std::string& key, const JsonValue& value);
 
+/// Throws Error(usage) if an object of cell keys has both "method" and "scheme".
+void require_one_kind(const JsonValue& json);
+
 /// An object of cell keys, each with one value or an array of several, all of them checked.
 Axes read_axes(const JsonValue& json);
 

@@ -8,10 +8,12 @@
 namespace vecino {
 namespace {
 
-/// Ceilings of one scene stand together; what is traced for them is their reference.
+/// Ceilings of one reference stand together: it is all that is traced for them.
 std::string job_key(const Cell& cell) {
-    if (cell.kind == CellKind::blocky_ceiling) return cell.scene + " ceilings";
-    return frame_json(cell.scene, cell.settings).dump();
+    if (cell.kind != CellKind::blocky_ceiling) return frame_json(cell.scene, cell.settings).dump();
+    nlohmann::json key = cell.parameters_json();
+    key.erase("reduction");
+    return key.dump();
 }
 
 }  // namespace

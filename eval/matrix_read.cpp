@@ -37,6 +37,7 @@ int read_repeat(const JsonValue& json) {
 void check_fixed(const JsonValue& json) {
     json.require_keys(cell_keys());
     for (const auto& [key, value] : json.members()) require_cell_value(key, value);
+    require_one_kind(json);
 }
 
 void check_cells(const JsonValue& json) {
@@ -65,13 +66,14 @@ Matrix check(Json document, const std::string& file) {
 }
 
 /// Scene paths are relative to the file that they stand in: once they stand in another one, they
-/// have to lead to the same place.
+/// have to lead to the same place, and be spelled as one would there, so that excludes match them.
 void move_scenes(Json& json, const fs::path& from, const fs::path& to) {
     if (json.is_array()) {
         for (Json& each : json) move_scenes(each, from, to);
     } else if (json.is_object() && json.contains("scene")) {
         const auto moved = [&](const Json& scene) {
-            return (from / scene.get<std::string>()).lexically_proximate(to).generic_string();
+            const fs::path file = (from / scene.get<std::string>()).lexically_normal();
+            return file.lexically_proximate(to).generic_string();
         };
         Json& scene = json["scene"];
         if (!scene.is_array()) scene = moved(scene);
@@ -98,7 +100,7 @@ Matrix load(const std::string& path, std::vector<std::string>& opened) {
     const JsonValue json(own, path);
     if (!own.is_object() || !json.has("extends")) return check(own, path);
     (void)json.at("name").string();
-    const fs::path folder = fs::path(path).parent_path();
+    const fs::path folder = fs::path(path).parent_path().lexically_normal();
     const std::string base_path =
         (folder / json.at("extends").string()).lexically_normal().string();
     opened.push_back(fs::path(path).lexically_normal().string());
