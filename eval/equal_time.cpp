@@ -81,18 +81,23 @@ std::optional<int> EqualTimeBudgets::spp(const Cell& cell) const {
     if (entry == entries_.end() || !entry->is_object()) return std::nullopt;
     const nlohmann::json spp = entry->value("spp", nlohmann::json());
     const bool is_same = entry->value("question", nlohmann::json()) == question(cell);
-    if (!is_same || !spp.is_number_integer() || spp < 1) return std::nullopt;
+    const bool is_count =
+        spp.is_number_integer() && spp >= 1 && spp <= std::numeric_limits<int>::max();
+    if (!is_same || !is_count) return std::nullopt;
     return spp.get<int>();
 }
 
-std::optional<int> EqualTimeBudgets::spp(const Cell& cell, const std::string& build) const {
+std::optional<int> EqualTimeBudgets::spp(const Cell& cell, const std::string& state) const {
     const auto found = spp(cell);
-    if (found && entries_[cell.group].value("build", "") != build) return std::nullopt;
+    // Whatever stands there, should somebody have edited the file.
+    const nlohmann::json stored =
+        found ? entries_[cell.group].value("state", nlohmann::json()) : nlohmann::json();
+    if (stored != state) return std::nullopt;
     return found;
 }
 
-void EqualTimeBudgets::put(const Cell& cell, const std::string& build, int spp) {
-    entries_[cell.group] = {{"spp", spp}, {"question", question(cell)}, {"build", build}};
+void EqualTimeBudgets::put(const Cell& cell, const std::string& state, int spp) {
+    entries_[cell.group] = {{"spp", spp}, {"question", question(cell)}, {"state", state}};
     write_text_file(path_, entries_.dump(1) + "\n");
 }
 

@@ -21,10 +21,10 @@ class EqualTimeBudgets {
 
     /// Of the cell's group, if it was measured for the same question.
     [[nodiscard]] std::optional<int> spp(const Cell& cell) const;
-    /// The same, measured by this build of the program too.
-    [[nodiscard]] std::optional<int> spp(const Cell& cell, const std::string& build) const;
+    /// The same, measured in this state of program and scene file too.
+    [[nodiscard]] std::optional<int> spp(const Cell& cell, const std::string& state) const;
     /// Keeps it, in the file.
-    void put(const Cell& cell, const std::string& build, int spp);
+    void put(const Cell& cell, const std::string& state, int spp);
 
   private:
     std::string path_;

@@ -131,15 +131,21 @@ class Runner {
         }
     }
 
-    // Before the first frame: all seeds of a group get the same.
+    // Before the first frame: all seeds of a group get the same, those that are kept too.
     void measure_equal_times() {
+        std::set<std::string> with_kept;
+        for (const PlannedCell& planned : plan_) {
+            if (!planned.run && planned.state != CellState::missing)
+                with_kept.insert(planned.cell->group);
+        }
         for (const PlannedCell& planned : plan_) {
             const Cell& cell = *planned.cell;
             if (!planned.run || cell.budget != Budget::equal_time) continue;
-            if (!equal_time_.spp(cell, build_)) {
-                const int spp = measure_equal_time_spp(scenes_.at(cell.scene), cell);
-                equal_time_.put(cell, build_, spp);
-            }
+            const std::string state = build_ + " " + scene_hashes_.at(cell.scene);
+            const auto known = with_kept.contains(cell.group) ? equal_time_.spp(cell)
+                                                              : equal_time_.spp(cell, state);
+            if (known) continue;
+            equal_time_.put(cell, state, measure_equal_time_spp(scenes_.at(cell.scene), cell));
         }
         for (Cell& cell : cells_) {
             if (cell.budget != Budget::equal_time) continue;
