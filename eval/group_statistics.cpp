@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/error.h"
 #include "core/files.h"
 #include "core/image_io.h"
 #include "core/parallel.h"
@@ -51,8 +52,13 @@ Json read_kept(const std::string& path) {
 std::optional<SeedStatisticsByRegion> kept_statistics(const Json& kept, const Group& group) {
     const auto entry = kept.find(group.name);
     if (entry == kept.end() || !entry->is_object()) return std::nullopt;
-    if (entry->value("key", "") != group.key) return std::nullopt;
-    return read_seed_statistics(JsonValue(entry->at("statistics"), "statistics.json"));
+    if (entry->value("key", Json()) != group.key) return std::nullopt;
+    const Json statistics = entry->value("statistics", Json());
+    try {
+        return read_seed_statistics(JsonValue(statistics, "statistics.json"));
+    } catch (const Error&) {
+        return std::nullopt;  // another version of the program kept something else there
+    }
 }
 
 struct Reference {
