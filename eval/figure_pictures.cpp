@@ -70,6 +70,15 @@ Image band(const Image& image, std::size_t index, std::size_t n) {
     return part;
 }
 
+/// Of the first finished seed: one that failed may hold what no picture can show.
+std::string finished_image(const ReportData& data, const GroupSummary& group) {
+    for (const std::string& cell : group.cells) {
+        std::string file = data.directory + "/cells/" + cell + "/image.exr";
+        if (data.row_of(cell)["status"] == "ok" && std::filesystem::exists(file)) return file;
+    }
+    return "";
+}
+
 std::vector<LabelledPicture> strip_pictures(const ReportData& data, const Figure& figure) {
     Variant variant = data.reproduction->specification.variants.front();
     variant.where = variant.where.without("spp");
@@ -82,9 +91,8 @@ std::vector<LabelledPicture> strip_pictures(const ReportData& data, const Figure
     std::ranges::sort(groups, {}, spp);
     std::vector<LabelledPicture> pictures;
     for (std::size_t i = 0; i < groups.size(); ++i) {
-        const std::string file =
-            data.directory + "/cells/" + groups[i]->cells.front() + "/image.exr";
-        if (!std::filesystem::exists(file)) continue;
+        const std::string file = finished_image(data, *groups[i]);
+        if (file.empty()) continue;
         const Image strip = band(load_image(file), i, groups.size());
         pictures.push_back({std::to_string(spp(groups[i])) + " spp", picture_url(strip, data)});
     }

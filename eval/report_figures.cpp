@@ -2,6 +2,7 @@
 //
 // The figures of a publication, made again: mosaics of a run's pictures with their error maps.
 #include <algorithm>
+#include <map>
 
 #include "eval/commands.h"
 #include "eval/html_text.h"
@@ -34,16 +35,15 @@ std::string mosaic(const ReportData& data, const Figure& figure) {
     const Variant& variant = data.reproduction->specification.variants.front();
     // By parameters first, so that the same ones of all scenes stand side by side.
     std::vector<const GroupSummary*> panels;
+    std::map<std::string, std::size_t> rank;
     for (const Selection& selection : figure.of) {
-        for (const GroupSummary* group : select(data.groups, selection, variant))
+        for (const GroupSummary* group : select(data.groups, selection, variant)) {
+            rank.try_emplace(short_name(*group), panels.size());
             panels.push_back(group);
+        }
     }
-    std::ranges::stable_sort(panels, {}, [&](const GroupSummary* group) {
-        const auto first = std::ranges::find_if(panels, [&](const GroupSummary* other) {
-            return short_name(*other) == short_name(*group);
-        });
-        return first - panels.begin();
-    });
+    std::ranges::stable_sort(
+        panels, {}, [&](const GroupSummary* group) { return rank.at(short_name(*group)); });
     std::string html = "<div class=\"mosaic\">";
     for (const GroupSummary* group : panels) html += group_panel(data, *group);
     if (panels.empty()) html += "<p class=\"note\">No result of this run belongs here.</p>";

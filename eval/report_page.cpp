@@ -69,8 +69,11 @@ std::string legend_html(const ReportData& data) {
 /// Links to the sections that only a reproduction has.
 std::string contents_html(const ReportData& data) {
     if (!data.reproduction) return "";
-    return "<a href=\"#reproduction\">Reproduction</a> <a href=\"#graphs\">Graphs</a> "
-           "<a href=\"#figures\">Figures</a> ";
+    const Reproduction& specification = data.reproduction->specification;
+    std::string html = "<a href=\"#reproduction\">Reproduction</a> ";
+    if (!specification.graphs.empty()) html += "<a href=\"#graphs\">Graphs</a> ";
+    if (!specification.figures.empty()) html += "<a href=\"#figures\">Figures</a> ";
+    return html;
 }
 
 std::string chart_switches_html(const ReportData& data) {

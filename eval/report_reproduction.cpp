@@ -303,8 +303,10 @@ Json graphs_json(const ReportData& data) {
             if (group.method == "path" && Selection().matches(group.params, variant.where))
                 add(group, "path");
         }
-        for (const GroupSummary* group : select(data.groups, graph.of, variant))
-            add(*group, short_name(*group).substr(group->method.size() + 1));
+        for (const GroupSummary* group : select(data.groups, graph.of, variant)) {
+            if (group->method != "path")
+                add(*group, short_name(*group).substr(group->method.size() + 1));
+        }
         graphs.push_back({{"id", graph.id}, {"bars", bars}});
     }
     return graphs;

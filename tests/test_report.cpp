@@ -14,6 +14,7 @@
 #include "eval/run_matrix.h"
 #include "tests/catch.h"
 #include "tests/error_of.h"
+#include "tests/page_text.h"
 #include "tests/result_rows.h"
 #include "tests/temp_dir.h"
 
@@ -62,29 +63,6 @@ std::string page_of(const std::vector<nlohmann::json>& rows) {
     for (const nlohmann::json& row : rows) lines += row.dump() + "\n";
     temp.write("results.jsonl", lines);
     return read_file(write_report(read_report_data(temp.path(""))));
-}
-
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-    std::size_t found = 0;
-    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-    return found;
-}
-
-std::string between(const std::string& text, const std::string& begin, const std::string& end) {
-    const std::size_t from = text.find(begin);
-    REQUIRE(from != std::string::npos);
-    const std::size_t to = text.find(end, from + begin.size());
-    REQUIRE(to != std::string::npos);
-    return text.substr(from + begin.size(), to - from - begin.size());
-}
-
-nlohmann::json embedded_data(const std::string& page) {
-    return nlohmann::json::parse(
-        between(page, "<script type=\"application/json\" id=\"report-data\">", "</script>"));
 }
 
 /// The table row of a group of result_row().
