@@ -79,11 +79,10 @@ std::string chart_switches_html(const ReportData& data) {
                (pressed ? "true" : "false") + "\">" + escaped(text) + "</button>";
     };
     std::string html =
-        "<div class=\"switch\" role=\"group\" aria-label=\"Where the error is measured\">" +
-        button("data-region=\"\"", "whole image", true);
+        "<div class=\"switch\" role=\"group\" aria-label=\"Region beside the whole image\">";
     for (const RegionInfo& info : kRegions) {
         const std::string name(info.name);
-        html += button("data-region=\"" + name + "\"", name, false);
+        html += button("data-region=\"" + name + "\"", name, info.region == Region::interior);
     }
     html += "</div>\n";
     if (!data.reproduction) return html;
@@ -98,10 +97,15 @@ std::string charts_html(const ReportData& data) {
     std::string html;
     for (const std::string& scene : data.scenes) {
         const std::string name = escaped(scene);
-        html += "<figure><figcaption>" + name;
-        html += "</figcaption><div class=\"plot\"><canvas role=\"img\" data-scene=\"" + name;
-        html += "\" aria-label=\"Time against psnr_float_db of every method on " + name;
-        html += "; the numbers are in the results table.\"></canvas></div></figure>\n";
+        for (const char* part : {"whole", "region"}) {
+            const bool is_whole = std::string_view(part) == "whole";
+            html += "<figure><figcaption>" + name + ", ";
+            html += is_whole ? "whole image" : "<span class=\"region-name\">interior</span>";
+            html += "</figcaption><div class=\"plot\"><canvas role=\"img\" data-scene=\"" + name;
+            html += "\" data-part=\"" + std::string(part);
+            html += "\" aria-label=\"Time against psnr_float_db of every method on " + name;
+            html += "; the numbers are in the results table.\"></canvas></div></figure>\n";
+        }
     }
     return html;
 }

@@ -99,6 +99,7 @@ Item read_item(const JsonValue& json) {
     item.id = json.at("id").string();
     item.section = json.at("section").string();
     item.text = json.at("text").string();
+    if (json.has("note")) item.note = json.at("note").string();
     item.published = json.at("published").number(kPositive);
     item.unit = json.at("unit").string();
     if (item.unit != "%" && item.unit != "min" && item.unit != "h")

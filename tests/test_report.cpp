@@ -49,7 +49,9 @@ struct TinyRun {
         return load_image(directory + "/" + data.rows[0]["reference_file"].get<std::string>() +
                           ".exr");
     }
-    [[nodiscard]] std::string page() const { return read_file(write_report(read_report_data(directory))); }
+    [[nodiscard]] std::string page() const {
+        return read_file(write_report(read_report_data(directory)));
+    }
     [[nodiscard]] std::string cell(const std::string& name) const {
         return directory + "/cells/" + kOddScene + "." + name + "/";
     }
@@ -180,8 +182,8 @@ TEST_CASE("every cell with an image gets both error maps, and nothing else", "[r
         for (const auto& entry : std::filesystem::directory_iterator(run.cell(name))) {
             files.insert(entry.path().filename().string());
         }
-        CHECK(files == std::set<std::string>{"error.png", "error_signed.png",
-                                             "image.exr", "image.png"});
+        CHECK(files ==
+              std::set<std::string>{"error.png", "error_signed.png", "image.exr", "image.png"});
         CHECK(load_image(run.cell(name) + "error.png").size().width > 384);
     }
 }
