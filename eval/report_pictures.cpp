@@ -174,6 +174,8 @@ ReportPictures make_report_pictures(const ReportData& data) {
     References references;
     std::vector<MapJob> jobs = map_jobs(data, references, pictures);
     choose_embedded(data, jobs);
+    pictures.has_linked =
+        std::ranges::any_of(jobs, [](const MapJob& job) { return !job.is_embedded; });
     for_each_job(jobs, measure);
     std::vector<float> magnitude_ranges;
     std::vector<float> sign_ranges;

@@ -94,7 +94,7 @@ Claim read_claim(const JsonValue& json) {
 
 Item read_item(const JsonValue& json) {
     json.require_keys(
-        {"id", "section", "text", "published", "unit", "quantity", "of", "within", "spp"});
+        {"id", "section", "text", "note", "published", "unit", "quantity", "of", "within", "spp"});
     Item item;
     item.id = json.at("id").string();
     item.section = json.at("section").string();
