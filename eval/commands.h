@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The subcommands of the program. Each adds itself to the parser; when it is the one on the command
-// line it stores what to do in chosen, which main runs.
+// line it stores what to do in chosen, which run_program runs.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,6 +14,9 @@
 namespace vecino {
 
 using Action = std::function<ExitCode()>;
+
+/// The whole program, which tests call as main does: returns the exit code.
+int run_program(int argc, const char* const* argv);
 
 void add_render_command(CLI::App& app, Action& chosen);
 void add_upsample_command(CLI::App& app, Action& chosen);
