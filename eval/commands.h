@@ -34,13 +34,19 @@ nlohmann::json version_json();
 /// "12.3 dB" or "-" for none.
 std::string number_text(double value, int digits);
 
+/// A value that is there: an empty one is a shell variable that was not set.
+inline CLI::Validator not_empty() {
+    return {[](const std::string& text) { return text.empty() ? "found nothing" : ""; }, ""};
+}
+
 /// Adds a flag for a row of an option table; text is what was given on the command line.
 template <class Row>
 CLI::Option* add_table_option(CLI::App& command, const Row& row, std::string& text) {
     return command
         .add_option(std::string(row.flag), text,
                     std::string(row.summary) + " (" + std::string(row.allowed) + ")")
-        ->type_name("");
+        ->type_name("")
+        ->check(not_empty());
 }
 
 }  // namespace vecino

@@ -2,8 +2,10 @@
 #include "eval/render_options.h"
 
 #include <charconv>
+#include <cmath>
 #include <limits>
 
+#include "core/image_format.h"
 #include "core/named_values.h"
 
 namespace vecino {
@@ -31,6 +33,9 @@ void set_size(RenderSettings& settings, const JsonValue& json) {
     const auto sides = json.raw().is_array() ? json.elements() : std::vector<JsonValue>{};
     if (sides.size() != 2) json.fail("WxH on the command line, [W, H] in a matrix");
     settings.size = {sides[0].integer(1, kMostSide), sides[1].integer(1, kMostSide)};
+    if (!size_fault(settings.size).empty()) {
+        json.fail("at most " + std::to_string(kMaxPixels) + " pixels");
+    }
 }
 
 // clang-format off
@@ -85,7 +90,7 @@ nlohmann::json option_value(const std::string& text) {
     long long integer = 0;
     if (read_whole(text, integer)) return integer;
     double number = 0;
-    if (read_whole(text, number)) return number;
+    if (read_whole(text, number) && std::isfinite(number)) return number;  // JSON has no NaN
     const std::size_t cross = text.find('x');
     long long width = 0;
     long long height = 0;
