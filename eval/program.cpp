@@ -62,6 +62,7 @@ int run_program(int argc, const char* const* argv) {
     add_run_command(app, chosen);
     add_report_command(app, chosen);
     add_list_command(app, chosen);
+    add_schema_command(app, chosen);
     app.footer(
         "Exit codes: 0 pass; 2 a quality limit failed or cells of a run failed; 3 sizes, channels "
         "or planes do not fit;\n"

@@ -52,6 +52,7 @@ struct SchemeOption {
     void (*set)(SchemeParameters&, const JsonValue&);
     /// The value of this option as it stands in a cell's name ("w7", "inverse", ...).
     std::string (*slug)(const SchemeParameters&);
+    nlohmann::json (*schema)();  ///< the JSON Schema of what `set` reads
 };
 
 /// All options of all schemes.
