@@ -1,33 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nlohmann/json.hpp>
-
-#include "core/error.h"
 #include "tests/catch.h"
-#include "tests/error_of.h"
 #include "tests/scene_text.h"
 
 using namespace vecino;
 using namespace vecino::test;
 
-namespace {
-
-const char* const kCamera =
-    R"("camera": {"position": [0, 1, 4], "look_at": [0, 1, 0], "up": [0, 1, 0], "vertical_fov_degrees": 40})";
-
-std::string with(const std::string& materials, const std::string& objects) {
-    return std::string("{") + kCamera + R"(, "materials": {)" + materials + R"(}, "objects": [)" +
-           objects + "]}";
-}
-
-}  // namespace
-
 TEST_CASE("a scene reads as it is written", "[scene]") {
-    const Scene scene =
-        scene_from(with(R"("m": {"albedo": [0.5, 0.25, 1]}, "lamp": {"emission": [1, 2, 3]})",
-                        R"({"quad": [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], "material": "m"},
-           {"sphere": {"center": [1, 2, 3], "radius": 4}, "material": "lamp"},
-           {"triangles": {"positions": [[0,0,0],[1,0,0],[0,1,0]], "indices": [[2,1,0]], "normals": [[0,0,2],[0,1,0],[1,0,0]]},
-            "material": "m"})"));
+    const Scene scene = scene_from(R"({
+        "camera": {"position": [0, 1, 4], "look_at": [0, 1, 0], "up": [0, 1, 0], "vertical_fov_degrees": 40},
+        "materials": {"m": {"albedo": [0.5, 0.25, 1]}, "lamp": {"emission": [1, 2, 3]}},
+        "objects": [
+            {"quad": [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], "material": "m"},
+            {"sphere": {"center": [1, 2, 3], "radius": 4}, "material": "lamp"},
+            {"triangles": {"positions": [[0,0,0],[1,0,0],[0,1,0]], "indices": [[2,1,0]], "normals": [[0,0,2],[0,1,0],[1,0,0]]},
+             "material": "m"}]})");
     CHECK(scene.name == "test");
     CHECK(scene.camera.position_world == glm::vec3(0, 1, 4));
     CHECK(scene.camera.vertical_fov_degrees == 40.0f);
