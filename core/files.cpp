@@ -64,6 +64,10 @@ void require_readable(const std::string& path) {
     open_to_read(path);
 }
 
+void require_writable(const std::string& path) {
+    const TemporaryFile probe(path);
+}
+
 std::string read_file(const std::string& path) {
     const File file = open_to_read(path);
     std::string bytes;

@@ -19,6 +19,10 @@ std::string one_line(std::string text);
 /// Throws Error(file) if there is no such file, or it is a directory or not ours to read.
 void require_readable(const std::string& path);
 
+/// Throws Error(file) if no file can be made in the place of this one. For use before work whose
+/// result goes there.
+void require_writable(const std::string& path);
+
 /// All bytes of a file. Throws Error(file).
 std::string read_file(const std::string& path);
 

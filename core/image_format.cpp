@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -24,9 +23,6 @@ constexpr Format kFormats[] = {
     {".exr", Content::planes},  {".hdr", Content::rgbe},    {".tif", Content::linear},
     {".tiff", Content::linear}, {".png", Content::encoded}, {".bmp", Content::encoded},
 };
-
-/// Whole images are addressed with 32-bit numbers in more than one library.
-constexpr long long kMaxPixels = std::numeric_limits<std::int32_t>::max();
 
 /// Case does not count: .PNG is a PNG.
 std::string extension_of(const std::string& path) {

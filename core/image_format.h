@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,9 @@
 #include "core/planes.h"
 
 namespace vecino {
+
+/// Whole images are addressed with 32-bit numbers in more than one library.
+constexpr long long kMaxPixels = std::numeric_limits<std::int32_t>::max();
 
 /// What a file keeps of a frame.
 enum class Content {

@@ -19,6 +19,7 @@
 #include "core/files.h"
 #include "core/image_format.h"
 #include "core/json_read.h"
+#include "core/memory.h"
 #include "core/planes.h"
 #include "core/png_check.h"
 
@@ -257,7 +258,9 @@ class Samples {
             end = std::max(end, std::ranges::max(location.channels) + 1);
         }
         stride_ = static_cast<std::size_t>(end - first_);
-        values_.resize(size_of(source).area() * stride_);
+        const std::size_t count = size_of(source).area() * stride_;
+        require_memory(2 * count * sizeof(float), source.path);  // once here, once as planes
+        values_.resize(count);
         const bool whole =
             source.input->read_image(0, 0, first_, end, TypeDesc::FLOAT, values_.data());
         // Some readers (TIFF's up to 3.0) report a broken file and say yes all the same.

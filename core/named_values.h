@@ -22,12 +22,17 @@ struct Named {
 };
 
 template <class Value, std::size_t N>
+std::vector<std::string_view> names_of(const Named<Value> (&table)[N]) {
+    std::vector<std::string_view> names;
+    std::ranges::transform(table, std::back_inserter(names), &Named<Value>::name);
+    return names;
+}
+
+template <class Value, std::size_t N>
 Value value_of(const Named<Value> (&table)[N], const JsonValue& json) {
     const auto* const row = std::ranges::find(table, json.string(), &Named<Value>::name);
     if (row != std::end(table)) return row->value;
-    std::vector<std::string_view> allowed;
-    for (const Named<Value>& each : table) allowed.push_back(each.name);
-    json.fail(join(allowed));
+    json.fail(join(names_of(table)));
 }
 
 template <class Value, std::size_t N>

@@ -9,6 +9,7 @@
 #include "core/accumulate.h"
 #include "core/error.h"
 #include "core/flat_scene.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/timing.h"
 #include "core/trace_task.h"
@@ -222,6 +223,9 @@ Render render(const Scene& scene, const RenderSettings& settings, const Progress
     check(settings);
     const TraceKernel& kernel = kernel_for(settings.simd_width);
     const Extent size = reduced(settings.size, settings.reduction);
+    Planes planes = settings.planes;
+    planes.add(Plane::radiance);
+    require_memory(bytes_of(planes, size), "frame of " + size_text(size));
     Render result{make_frame(size, settings), {}};
     result.statistics.threads = settings.threads > 0 ? settings.threads : default_thread_count();
     result.statistics.simd_width = kernel.width;

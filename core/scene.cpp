@@ -6,14 +6,24 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <iterator>
+#include <limits>
+#include <utility>
 
-#include "core/json_read.h"
+#include "core/json_schema.h"
 
 namespace vecino {
 namespace {
 
-constexpr NumberRange kAlbedoRange{0.0, 1.0};
-constexpr NumberRange kRadianceRange{0.0, 1.0e30};  // leaves room for sums
+using enum Presence;
+
+constexpr Vec3Kind kPoint{};
+constexpr Vec3Kind kAlbedo{{0.0, 1.0}};
+constexpr Vec3Kind kRadiance{{0.0, 1.0e30}};  // leaves room for sums
+constexpr RealKind kFieldOfView{{0.001, 179.0}};
+constexpr IntegerKind kIndex{0, std::numeric_limits<int>::max()};
+constexpr TextKind kText{};
+constexpr Named<Pattern> kPatternNames[] = {{"xy_gradient", Pattern::xy_gradient}};
+constexpr ChoiceKind kPattern{kPatternNames};
 
 // A triangle whose area is lost in the rounding of its own coordinates has no normal.
 bool has_area(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
@@ -23,13 +33,18 @@ bool has_area(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
     return glm::length(glm::cross(ab, ac)) > 1e-7 * longest && longest > 1e-60;
 }
 
+constexpr JsonKey<Camera> kCameraKeys[] = {
+    member_key<kPoint, &Camera::position_world>("position", required, "where the camera stands"),
+    member_key<kPoint, &Camera::look_at_world>("look_at", required,
+                                               "the point in the middle of the image"),
+    member_key<kPoint, &Camera::up_world>("up", required, "a direction that is up in the image"),
+    member_key<kFieldOfView, &Camera::vertical_fov_degrees>("vertical_fov_degrees", required,
+                                                            "from bottom to top of the image"),
+};
+
 Camera parse_camera(const JsonValue& json) {
-    json.require_keys({"position", "look_at", "up", "vertical_fov_degrees"});
     Camera camera;
-    camera.position_world = json.at("position").vec3();
-    camera.look_at_world = json.at("look_at").vec3();
-    camera.up_world = json.at("up").vec3();
-    camera.vertical_fov_degrees = json.at("vertical_fov_degrees").real({0.001, 179.0});
+    read_object(json, kCameraKeys, camera);
     if (!has_area(glm::vec3(0.0f), camera.look_at_world - camera.position_world, camera.up_world)) {
         json.at("up").fail(
             "a direction that is not parallel to look_at - position, "
@@ -38,15 +53,19 @@ Camera parse_camera(const JsonValue& json) {
     return camera;
 }
 
+constexpr JsonKey<Material> kMaterialKeys[] = {
+    member_key<kAlbedo, &Material::albedo>("albedo", optional, "share of light reflected"),
+    member_key<kRadiance, &Material::emission>("emission", optional,
+                                               "radiance sent out, on one side"),
+};
+
 Material parse_material(const std::string& name, const JsonValue& json) {
-    json.require_keys({"albedo", "emission"});
     Material material{.name = name};
-    if (json.has("albedo")) material.albedo = json.at("albedo").vec3(kAlbedoRange);
-    if (json.has("emission")) material.emission = json.at("emission").vec3(kRadianceRange);
+    read_object(json, kMaterialKeys, material);
     return material;
 }
 
-Quad parse_quad(const JsonValue& json) {
+void read_quad(Object& object, const JsonValue& json) {
     const auto corners = json.elements();
     if (corners.size() != 4) {
         json.fail(std::to_string(corners.size()) + " corners", "4 corners of 3 numbers");
@@ -58,16 +77,21 @@ Quad parse_quad(const JsonValue& json) {
     if (!has_area(p[0], p[1], p[2]) || !has_area(p[0], p[2], p[3])) {
         json.fail("a zero-area shape", "corners 012 and 023 that span triangles");
     }
-    return quad;
+    object.shape = quad;
 }
 
-Sphere parse_sphere(const JsonValue& json) {
-    json.require_keys({"center", "radius"});
-    const JsonValue radius = json.at("radius");
-    Sphere sphere{json.at("center").vec3(), radius.real()};
-    if (!(sphere.radius > 0.0f)) radius.fail("a number above 0");
-    return sphere;
+void read_radius(Sphere& sphere, const JsonValue& json) {
+    sphere.radius = json.real();
+    if (!(sphere.radius > 0.0f)) json.fail("a number above 0");
 }
+
+constexpr JsonKey<Sphere> kSphereKeys[] = {
+    member_key<kPoint, &Sphere::center_world>("center", required, ""),
+    {"radius", required, "", read_radius,
+     [] {
+         return nlohmann::json{{"type", "number"}, {"exclusiveMinimum", 0}};
+     }},
+};
 
 std::array<std::uint32_t, 3> parse_triangle(const JsonValue& json,
                                             const std::vector<glm::vec3>& positions) {
@@ -76,7 +100,7 @@ std::array<std::uint32_t, 3> parse_triangle(const JsonValue& json,
     std::array<std::uint32_t, 3> triangle{};
     const int last = static_cast<int>(positions.size()) - 1;
     std::ranges::transform(corners, triangle.begin(), [&](const JsonValue& corner) {
-        return static_cast<std::uint32_t>(corner.integer(0, last));
+        return static_cast<std::uint32_t>(corner.integer(kIndex.least, last));
     });
     if (!has_area(positions[triangle[0]], positions[triangle[1]], positions[triangle[2]])) {
         json.fail("a zero-area shape", "three positions that span a triangle");
@@ -84,52 +108,67 @@ std::array<std::uint32_t, 3> parse_triangle(const JsonValue& json,
     return triangle;
 }
 
-std::vector<glm::vec3> parse_points(const JsonValue& json) {
-    std::vector<glm::vec3> points;
-    for (const JsonValue& point : json.elements()) points.push_back(point.vec3());
-    return points;
+void read_positions(TriangleMesh& mesh, const JsonValue& json) {
+    for (const JsonValue& point : json.elements()) mesh.positions_world.push_back(point.vec3());
+    if (mesh.positions_world.size() < 3) json.fail("at least 3 positions");
 }
 
-std::vector<glm::vec3> parse_normals(const JsonValue& json, std::size_t count) {
-    std::vector<glm::vec3> normals;
+void read_indices(TriangleMesh& mesh, const JsonValue& json) {
+    for (const JsonValue& triangle : json.elements()) {
+        mesh.indices.push_back(parse_triangle(triangle, mesh.positions_world));
+    }
+    if (mesh.indices.empty()) json.fail("at least 1 triangle");
+}
+
+void read_normals(TriangleMesh& mesh, const JsonValue& json) {
     for (const JsonValue& element : json.elements()) {
         const glm::vec3 normal = element.vec3();
         const float length = glm::length(normal);
         if (!(length > 0.0f) || !std::isfinite(length))
             element.fail("a direction of length above 0");
-        normals.push_back(normal / length);
+        mesh.normals_world.push_back(normal / length);
     }
-    if (normals.size() != count) {
-        json.fail(std::to_string(normals.size()) + " normals",
+    const std::size_t count = mesh.positions_world.size();
+    if (mesh.normals_world.size() != count) {
+        json.fail(std::to_string(mesh.normals_world.size()) + " normals",
                   "as many as positions (" + std::to_string(count) + ")");
     }
-    return normals;
 }
 
-TriangleMesh parse_mesh(const JsonValue& json) {
-    json.require_keys({"positions", "indices", "normals"});
-    TriangleMesh mesh;
-    mesh.positions_world = parse_points(json.at("positions"));
-    if (mesh.positions_world.empty()) json.at("positions").fail("at least 3 positions");
-    for (const JsonValue& triangle : json.at("indices").elements()) {
-        mesh.indices.push_back(parse_triangle(triangle, mesh.positions_world));
-    }
-    if (mesh.indices.empty()) json.at("indices").fail("at least 1 triangle");
-    if (json.has("normals")) {
-        mesh.normals_world = parse_normals(json.at("normals"), mesh.positions_world.size());
-    }
-    return mesh;
-}
-
-// The shapes a scene may hold: one row each.
-struct ShapeKey {
-    std::string_view key;
-    void (*parse)(const JsonValue&, Object&);
+// In this order: triangles are checked against the positions, and normals counted.
+constexpr JsonKey<TriangleMesh> kMeshKeys[] = {
+    {"positions", required, "of the corners", read_positions,
+     [] {
+         return array_schema(kPoint.schema(), {3, 0});
+     }},
+    {"indices", required, "the positions of each triangle's corners, from 0", read_indices,
+     [] {
+         return array_schema(array_schema(kIndex.schema(), {3, 3}), {1, 0});
+     }},
+    {"normals", optional, "for shading, one for each position", read_normals,
+     [] {
+         return array_schema(kPoint.schema(), {3, 0});
+     }},
 };
-constexpr ShapeKey kShapes[] = {
-    {"quad", [](const JsonValue& json, Object& object) { object.shape = parse_quad(json); }},
-    {"sphere", [](const JsonValue& json, Object& object) { object.shape = parse_sphere(json); }},
-    {"triangles", [](const JsonValue& json, Object& object) { object.shape = parse_mesh(json); }},
+
+/// Reads an object of these keys as the shape.
+template <class Shape, const auto& kKeys>
+void read_shape(Object& object, const JsonValue& json) {
+    Shape shape;
+    read_object(json, kKeys, shape);
+    object.shape = std::move(shape);
+}
+
+// The shapes an object may have: exactly one of them.
+constexpr JsonKey<Object> kShapes[] = {
+    {"quad", optional, "corners of two triangles, 012 and 023", read_quad,
+     [] {
+         return array_schema(kPoint.schema(), {4, 4});
+     }},
+    {"sphere", optional, "", read_shape<Sphere, kSphereKeys>,
+     [] { return object_schema(kSphereKeys); }},
+    {"triangles", optional, "a mesh", read_shape<TriangleMesh, kMeshKeys>,
+     [] { return object_schema(kMeshKeys); }},
 };
 
 std::size_t parse_material_name(const JsonValue& json, const std::vector<Material>& materials) {
@@ -142,15 +181,15 @@ std::size_t parse_material_name(const JsonValue& json, const std::vector<Materia
 
 Object parse_object(const JsonValue& json, const std::vector<Material>& materials) {
     std::vector<std::string_view> keys;
-    std::ranges::transform(kShapes, std::back_inserter(keys), &ShapeKey::key);
+    std::ranges::transform(kShapes, std::back_inserter(keys), &JsonKey<Object>::name);
     const std::string shapes = join(keys);
     keys.push_back("material");
     json.require_keys(keys);
     Object object;
     int found = 0;
-    for (const ShapeKey& row : kShapes) {
-        if (!json.has(row.key)) continue;
-        row.parse(json.at(row.key), object);
+    for (const JsonKey<Object>& shape : kShapes) {
+        if (!json.has(shape.name)) continue;
+        shape.read(object, json.at(shape.name));
         ++found;
     }
     if (found != 1) json.fail(std::to_string(found) + " shapes", "exactly one of " + shapes);
@@ -158,12 +197,56 @@ Object parse_object(const JsonValue& json, const std::vector<Material>& material
     return object;
 }
 
-Scene parse_pattern(const JsonValue& json, Scene scene) {
-    json.require_keys({"pattern"});
-    if (json.at("pattern").string() != "xy_gradient") json.at("pattern").fail("\"xy_gradient\"");
-    scene.pattern = Pattern::xy_gradient;
-    return scene;
+nlohmann::json one_object_schema() {
+    nlohmann::json schema = object_schema(kShapes);
+    schema["properties"]["material"] = {{"type", "string"},
+                                        {"description", "the name of one of the materials"}};
+    schema["required"] = {"material"};
+    for (const JsonKey<Object>& shape : kShapes) {
+        schema["oneOf"].push_back({{"required", {shape.name}}});
+    }
+    return schema;
 }
+
+void read_materials(Scene& scene, const JsonValue& json) {
+    for (const auto& [name, material] : json.members()) {
+        scene.materials.push_back(parse_material(name, material));
+    }
+}
+
+nlohmann::json materials_schema() {
+    return {{"type", "object"}, {"additionalProperties", object_schema(kMaterialKeys)}};
+}
+
+void read_objects(Scene& scene, const JsonValue& json) {
+    for (const JsonValue& object : json.elements()) {
+        scene.objects.push_back(parse_object(object, scene.materials));
+    }
+}
+
+constexpr JsonKey<Scene> kSchemaKey{"$schema", optional, "the JSON Schema of scenes, for editors",
+                                    [](Scene&, const JsonValue& json) { (void)json.string(); },
+                                    schema_of<kText>};
+
+// In this order: objects name materials.
+constexpr JsonKey<Scene> kSceneKeys[] = {
+    kSchemaKey,
+    {"camera", required, "a pinhole camera",
+     [](Scene& scene, const JsonValue& json) { scene.camera = parse_camera(json); },
+     [] { return object_schema(kCameraKeys); }},
+    {"materials", required, "by name", read_materials, materials_schema},
+    {"objects", required, "what there is to see", read_objects,
+     [] {
+         return array_schema(one_object_schema(), {0, 0});
+     }},
+    member_key<kRadiance, &Scene::background>("background", optional,
+                                              "radiance where a ray hits nothing"),
+};
+
+constexpr JsonKey<Scene> kPatternKeys[] = {
+    kSchemaKey,
+    member_key<kPattern, &Scene::pattern>("pattern", required, "a picture that is not 3D"),
+};
 
 }  // namespace
 
@@ -171,21 +254,22 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     const JsonValue json(document, file);
     Scene scene;
     scene.name = std::filesystem::path(file).stem().string();
-    if (document.is_object() && json.has("pattern")) return parse_pattern(json, std::move(scene));
-    json.require_keys({"camera", "materials", "objects", "background"});
-    scene.camera = parse_camera(json.at("camera"));
-    for (const auto& [name, material] : json.at("materials").members()) {
-        scene.materials.push_back(parse_material(name, material));
+    if (json.has("pattern")) {
+        read_object(json, kPatternKeys, scene);
+    } else {
+        read_object(json, kSceneKeys, scene);
     }
-    for (const JsonValue& object : json.at("objects").elements()) {
-        scene.objects.push_back(parse_object(object, scene.materials));
-    }
-    if (json.has("background")) scene.background = json.at("background").vec3(kRadianceRange);
     return scene;
 }
 
 Scene load_scene(const std::string& path) {
     return parse_scene(parse_json_file(path), path);
+}
+
+nlohmann::json scene_schema() {
+    return document_schema("A scene of vecino", {{"if", {{"required", {"pattern"}}}},
+                                                 {"then", object_schema(kPatternKeys)},
+                                                 {"else", object_schema(kSceneKeys)}});
 }
 
 }  // namespace vecino

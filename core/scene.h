@@ -82,4 +82,7 @@ Scene load_scene(const std::string& path);
 /// Error(usage).
 Scene parse_scene(const nlohmann::json& document, const std::string& file);
 
+/// The JSON Schema of scene files, from the tables that they are read by.
+nlohmann::json scene_schema();
+
 }  // namespace vecino

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The subcommands of the program. Each adds itself to the parser; when it is the one on the command
-// line it stores what to do in chosen, which main runs.
+// line it stores what to do in chosen, which run_program runs.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,12 +15,16 @@ namespace vecino {
 
 using Action = std::function<ExitCode()>;
 
+/// The whole program, which tests call as main does: returns the exit code.
+int run_program(int argc, const char* const* argv);
+
 void add_render_command(CLI::App& app, Action& chosen);
 void add_upsample_command(CLI::App& app, Action& chosen);
 void add_compare_command(CLI::App& app, Action& chosen);
 void add_run_command(CLI::App& app, Action& chosen);
 void add_report_command(CLI::App& app, Action& chosen);
 void add_list_command(CLI::App& app, Action& chosen);
+void add_schema_command(CLI::App& app, Action& chosen);
 
 /// What --version prints: this program, its libraries, packet width and threads.
 std::string version_text();
@@ -31,13 +35,19 @@ nlohmann::json version_json();
 /// "12.3 dB" or "-" for none.
 std::string number_text(double value, int digits);
 
+/// A value that is there: an empty one is a shell variable that was not set.
+inline CLI::Validator not_empty() {
+    return {[](const std::string& text) { return text.empty() ? "found nothing" : ""; }, ""};
+}
+
 /// Adds a flag for a row of an option table; text is what was given on the command line.
 template <class Row>
 CLI::Option* add_table_option(CLI::App& command, const Row& row, std::string& text) {
     return command
         .add_option(std::string(row.flag), text,
                     std::string(row.summary) + " (" + std::string(row.allowed) + ")")
-        ->type_name("");
+        ->type_name("")
+        ->check(not_empty());
 }
 
 }  // namespace vecino

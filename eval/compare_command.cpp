@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string_view>
 
+#include "core/files.h"
 #include "core/image_io.h"
 #include "eval/commands.h"
 #include "eval/error_map.h"
 #include "eval/metrics.h"
 #include "eval/metrics_json.h"
+#include "eval/render_options.h"
 
 namespace vecino {
 namespace {
@@ -111,17 +114,28 @@ bool limits_hold(const CompareArguments& arguments, const Metrics& m) {
     return hold;
 }
 
-/// With the planes that regions are made from, if it has them.
-Frame load_reference(const std::string& path) {
+struct Reference {
+    Frame frame;             ///< with the planes that regions are made from, if it has them
+    std::string no_regions;  ///< why its planes could not be read
+};
+
+Reference load_reference(const std::string& path) {
     try {
-        return load_frame(path);
+        return {load_frame(path), ""};
     } catch (const Error& error) {
         // Other programs' planes may not be what ours are, and comparing needs radiance alone.
-        Frame frame;
-        frame.radiance = load_image(path);
-        std::fprintf(stderr, "warning: no regions: %s\n", error.what());
-        return frame;
+        Reference reference{{}, error.what()};
+        reference.frame.radiance = load_image(path);
+        return reference;
     }
+}
+
+/// What can be said before the work: a job that cannot end well does not start.
+void require_files(const CompareArguments& arguments) {
+    require_map_extension(arguments.error_map);
+    require_readable(arguments.test);
+    require_readable(arguments.reference);
+    if (!arguments.error_map.empty()) require_writable(arguments.error_map);
 }
 
 std::optional<RegionMap> regions_in(const Frame& reference) {
@@ -130,15 +144,15 @@ std::optional<RegionMap> regions_in(const Frame& reference) {
 }
 
 ExitCode run_compare(const CompareArguments& arguments) {
-    require_map_extension(arguments.error_map);
+    require_files(arguments);
     const Image test = load_image(arguments.test);
-    const Frame reference_frame = load_reference(arguments.reference);
-    const Image& reference = reference_frame.radiance;
+    const Reference loaded = load_reference(arguments.reference);
+    const Image& reference = loaded.frame.radiance;
     if (test.size() != reference.size()) {
         throw Error(ExitCode::mismatch, size_mismatch_text(arguments.test, test.size(),
                                                            arguments.reference, reference.size()));
     }
-    const std::optional<RegionMap> regions = regions_in(reference_frame);
+    const std::optional<RegionMap> regions = regions_in(loaded.frame);
     const Comparison comparison = compare(test, reference, regions ? &*regions : nullptr);
     write_error_map(arguments, test, reference);
     if (arguments.json) {
@@ -151,7 +165,19 @@ ExitCode run_compare(const CompareArguments& arguments) {
                      non_finite_text(arguments, comparison.non_finite).c_str());
         return ExitCode::non_finite;
     }
+    if (!loaded.no_regions.empty())
+        std::fprintf(stderr, "warning: no regions: %s\n", loaded.no_regions.c_str());
     return limits_hold(arguments, *comparison.metrics) ? ExitCode::ok : ExitCode::quality;
+}
+
+/// A limit that is not a number would let everything pass.
+CLI::Validator finite_number() {
+    const auto check = [](const std::string& text) -> std::string {
+        const auto value = option_value(text);
+        const bool is_finite = value.is_number() && std::isfinite(value.get<double>());
+        return is_finite ? "" : "found \"" + text + "\", allowed: a finite number";
+    };
+    return {check, ""};
 }
 
 std::string regions_help() {
@@ -174,15 +200,21 @@ void add_compare_command(CLI::App& app, Action& chosen) {
                      "image of the same size; an .exr with the planes emission, albedo, normal and "
                      "id gives metrics per region, too")
         ->required();
-    command->add_option("--error-map", arguments->error_map,
-                        ".png: a picture with a scale; .exr: test - reference, linear");
+    command
+        ->add_option("--error-map", arguments->error_map,
+                     ".png: a picture with a scale; .exr: test - reference, linear")
+        ->check(not_empty());
     command
         ->add_option("--error-kind", arguments->error_kind,
                      "what the picture shows: magnitude, sign")
         ->check(CLI::IsMember({"magnitude", "sign"}));
-    command->add_option("--min-psnr", arguments->min_psnr, "fail below this psnr_db");
-    command->add_option("--min-ssim", arguments->min_ssim, "fail below this ssim");
-    command->add_option("--max-relmse", arguments->max_relmse, "fail above this relmse");
+    const auto add_limit = [command](const char* flag, std::optional<double>& limit,
+                                     const char* summary) {
+        command->add_option(flag, limit, summary)->check(finite_number());
+    };
+    add_limit("--min-psnr", arguments->min_psnr, "fail below this psnr_db");
+    add_limit("--min-ssim", arguments->min_ssim, "fail below this ssim");
+    add_limit("--max-relmse", arguments->max_relmse, "fail above this relmse");
     command->add_flag("--json", arguments->json, "print one JSON object");
     command->callback(
         [arguments, &chosen] { chosen = [arguments] { return run_compare(*arguments); }; });

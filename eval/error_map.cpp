@@ -15,7 +15,7 @@ namespace {
 
 float pixel_error(glm::vec3 test, glm::vec3 reference, ErrorKind kind) {
     if (!is_finite(test) || !is_finite(reference)) return std::numeric_limits<float>::quiet_NaN();
-    const glm::dvec3 error = glm::dvec3(display_value(test)) - glm::dvec3(display_value(reference));
+    const glm::dvec3 error = glm::dvec3(test) - glm::dvec3(reference);
     if (kind == ErrorKind::sign) return static_cast<float>((error.x + error.y + error.z) / 3);
     const double square_sum = error.x * error.x + error.y * error.y + error.z * error.z;
     return static_cast<float>(std::sqrt(square_sum / 3));
@@ -40,7 +40,20 @@ void require_usable(float range) {
 
 }  // namespace
 
+Image display_image(const Image& linear) {
+    Image display(linear.size());
+    std::ranges::transform(linear.values(), display.values().begin(), [](const glm::vec3& value) {
+        return is_finite(value) ? display_value(value) : value;
+    });
+    return display;
+}
+
 Grid<float> error_values(const Image& test, const Image& reference, ErrorKind kind) {
+    require_comparable(test, reference);
+    return display_error_values(display_image(test), display_image(reference), kind);
+}
+
+Grid<float> display_error_values(const Image& test, const Image& reference, ErrorKind kind) {
     require_comparable(test, reference);
     Grid<float> values(test.size());
     for (std::size_t i = 0; i < values.values().size(); ++i)

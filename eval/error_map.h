@@ -23,6 +23,13 @@ enum class ErrorKind {
 /// differ.
 Grid<float> error_values(const Image& test, const Image& reference, ErrorKind kind);
 
+/// What error_values compares: clipped to [0,1] and sRGB-encoded; a pixel that is not finite stays
+/// so. For who draws several maps of one image.
+Image display_image(const Image& linear);
+
+/// error_values of two display images.
+Grid<float> display_error_values(const Image& test, const Image& reference, ErrorKind kind);
+
 /// The least "round" number (1, 2, 5 times a power of ten) that is not below the 99th percentile of
 /// |values|, over finite values; at least 0.001.
 float suggested_range(const Grid<float>& values);

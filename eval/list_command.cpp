@@ -52,6 +52,10 @@ nlohmann::json rows_of(const std::string& what, const std::string& config) {
         throw Error(ExitCode::usage,
                     "list cells: found no CONFIG, allowed: vecino list cells CONFIG");
     }
+    if (what != "cells" && !config.empty()) {
+        throw Error(ExitCode::usage,
+                    "list " + what + ": found CONFIG \"" + config + "\", allowed: with cells only");
+    }
     if (what == "schemes") return scheme_rows();
     if (what == "methods") return method_rows();
     if (what == "metrics") return metric_rows();

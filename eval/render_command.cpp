@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 
+#include "core/files.h"
 #include "core/image_io.h"
 #include "core/render.h"
 #include "core/timing.h"
@@ -90,6 +91,7 @@ ExitCode run_render(const RenderArguments& arguments) {
     require_writable_extension(arguments.output);
     const RenderSettings settings = settings_of(arguments);
     const Scene scene = load_scene(arguments.scene);
+    require_writable(arguments.output);
     catch_interrupts();
     const Render result = [&] {
         ProgressBar bar("render " + scene.name);
@@ -100,14 +102,16 @@ ExitCode run_render(const RenderArguments& arguments) {
     save_frame(result.frame, arguments.output,
                metadata_of(arguments.scene, settings, s.scene_s + s.trace_s));
     print_result(arguments, result, write_watch.seconds());
+    if (s.non_finite_pixels > 0) {
+        std::fprintf(stderr, "error: %s: %llu pixels are not finite\n", arguments.output.c_str(),
+                     static_cast<unsigned long long>(s.non_finite_pixels));
+        return ExitCode::non_finite;
+    }
     if (s.dropped_samples > 0) {
         std::fprintf(stderr, "warning: %llu samples were not finite and were left out\n",
                      static_cast<unsigned long long>(s.dropped_samples));
     }
-    if (s.non_finite_pixels == 0) return ExitCode::ok;
-    std::fprintf(stderr, "error: %llu pixels are not finite\n",
-                 static_cast<unsigned long long>(s.non_finite_pixels));
-    return ExitCode::non_finite;
+    return ExitCode::ok;
 }
 
 }  // namespace
@@ -121,7 +125,8 @@ void add_render_command(CLI::App& app, Action& chosen) {
     for (const RenderOption& row : render_options()) {
         add_table_option(*command, row, arguments->options[std::string(row.name)]);
     }
-    command->add_option("--planes", arguments->planes, "all, or a list such as radiance,normal,id");
+    command->add_option("--planes", arguments->planes, "all, or a list such as radiance,normal,id")
+        ->check(not_empty());
     command->add_option("--threads", arguments->threads, "default: all")
         ->check(CLI::Range(1, 1024));
     command->add_option("--simd-width", arguments->simd_width, "samples side by side: 4, 8, 16")

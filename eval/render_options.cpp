@@ -2,18 +2,24 @@
 #include "eval/render_options.h"
 
 #include <charconv>
+#include <cmath>
 #include <limits>
 
-#include "core/named_values.h"
+#include "core/image_format.h"
+#include "core/json_schema.h"
 
 namespace vecino {
 namespace {
 
 using Settings = const RenderSettings&;
 
-constexpr int kMostSide = 65536;
 constexpr int kMostInt = std::numeric_limits<int>::max();
 
+constexpr IntegerKind kSide{1, 65536};
+constexpr IntegerKind kReduction{1, 65536};
+constexpr IntegerKind kSpp{1, kMostInt};
+constexpr IntegerKind kDepth{0, 1000};
+constexpr IntegerKind kSeed{0, kMostInt};
 constexpr Named<LightSampling> kLightSamplings[] = {
     {"none", LightSampling::none},
     {"nee", LightSampling::nee},
@@ -26,11 +32,21 @@ constexpr Named<FirstHit> kFirstHits[] = {
     {"first_sample", FirstHit::first_sample},
     {"centre", FirstHit::centre},
 };
+constexpr ChoiceKind kLightSampling{kLightSamplings};
+constexpr ChoiceKind kSampler{kSamplers};
+constexpr ChoiceKind kFirstHit{kFirstHits};
 
 void set_size(RenderSettings& settings, const JsonValue& json) {
     const auto sides = json.raw().is_array() ? json.elements() : std::vector<JsonValue>{};
     if (sides.size() != 2) json.fail("WxH on the command line, [W, H] in a matrix");
-    settings.size = {sides[0].integer(1, kMostSide), sides[1].integer(1, kMostSide)};
+    settings.size = {kSide.read(sides[0]), kSide.read(sides[1])};
+    if (!size_fault(settings.size).empty()) {
+        json.fail("at most " + std::to_string(kMaxPixels) + " pixels");
+    }
+}
+
+nlohmann::json size_schema() {
+    return array_schema(kSide.schema(), {2, 2});
 }
 
 // clang-format off
@@ -38,35 +54,35 @@ const RenderOption kOptions[] = {
     {"size", "--size", "WxH, 1 to 65536 each", "full resolution of the image",
      set_size,
      [](Settings s) { return nlohmann::json{s.size.width, s.size.height}; },
-     [](Settings s) { return size_text(s.size); }},
+     [](Settings s) { return size_text(s.size); }, size_schema},
     {"reduction", "--reduction", "an integer >= 1", "trace floor(size / F), keeping the full aspect ratio",
-     [](RenderSettings& s, const JsonValue& json) { s.reduction = json.integer(1, kMostSide); },
+     read_into<kReduction, &RenderSettings::reduction>,
      [](Settings s) { return nlohmann::json(s.reduction); },
-     [](Settings s) { return "f" + std::to_string(s.reduction); }},
+     [](Settings s) { return "f" + std::to_string(s.reduction); }, schema_of<kReduction>},
     {"spp", "--spp", "an integer >= 1", "samples (paths) per traced pixel",
-     [](RenderSettings& s, const JsonValue& json) { s.spp = json.integer(1, kMostInt); },
+     read_into<kSpp, &RenderSettings::spp>,
      [](Settings s) { return nlohmann::json(s.spp); },
-     [](Settings s) { return "spp" + std::to_string(s.spp); }},
+     [](Settings s) { return "spp" + std::to_string(s.spp); }, schema_of<kSpp>},
     {"max_depth", "--max-depth", "0 to 1000", "surface bounces that may carry light",
-     [](RenderSettings& s, const JsonValue& json) { s.max_depth = json.integer(0, 1000); },
+     read_into<kDepth, &RenderSettings::max_depth>,
      [](Settings s) { return nlohmann::json(s.max_depth); },
-     [](Settings s) { return "d" + std::to_string(s.max_depth); }},
+     [](Settings s) { return "d" + std::to_string(s.max_depth); }, schema_of<kDepth>},
     {"light_sampling", "--light-sampling", "none, nee", "none: light is found by chance; nee: next-event estimation",
-     [](RenderSettings& s, const JsonValue& json) { s.light_sampling = value_of(kLightSamplings, json); },
+     read_into<kLightSampling, &RenderSettings::light_sampling>,
      [](Settings s) { return nlohmann::json(name_of(kLightSamplings, s.light_sampling)); },
-     [](Settings s) { return name_of(kLightSamplings, s.light_sampling); }},
+     [](Settings s) { return name_of(kLightSamplings, s.light_sampling); }, schema_of<kLightSampling>},
     {"sampler", "--sampler", "independent, sobol", "sobol is Owen-scrambled",
-     [](RenderSettings& s, const JsonValue& json) { s.sampler = value_of(kSamplers, json); },
+     read_into<kSampler, &RenderSettings::sampler>,
      [](Settings s) { return nlohmann::json(name_of(kSamplers, s.sampler)); },
-     [](Settings s) { return name_of(kSamplers, s.sampler); }},
+     [](Settings s) { return name_of(kSamplers, s.sampler); }, schema_of<kSampler>},
     {"first_hit", "--first-hit", "first_sample, centre", "the ray whose first hit is kept",
-     [](RenderSettings& s, const JsonValue& json) { s.first_hit = value_of(kFirstHits, json); },
+     read_into<kFirstHit, &RenderSettings::first_hit>,
      [](Settings s) { return nlohmann::json(name_of(kFirstHits, s.first_hit)); },
-     [](Settings s) { return name_of(kFirstHits, s.first_hit); }},
+     [](Settings s) { return name_of(kFirstHits, s.first_hit); }, schema_of<kFirstHit>},
     {"seed", "--seed", "0 to 2147483647", "of the random numbers",
-     [](RenderSettings& s, const JsonValue& json) { s.seed = static_cast<std::uint32_t>(json.integer(0, kMostInt)); },
+     read_into<kSeed, &RenderSettings::seed>,
      [](Settings s) { return nlohmann::json(s.seed); },
-     [](Settings s) { return "s" + std::to_string(s.seed); }},
+     [](Settings s) { return "s" + std::to_string(s.seed); }, schema_of<kSeed>},
 };
 // clang-format on
 
@@ -85,7 +101,7 @@ nlohmann::json option_value(const std::string& text) {
     long long integer = 0;
     if (read_whole(text, integer)) return integer;
     double number = 0;
-    if (read_whole(text, number)) return number;
+    if (read_whole(text, number) && std::isfinite(number)) return number;  // JSON has no NaN
     const std::size_t cross = text.find('x');
     long long width = 0;
     long long height = 0;

@@ -21,6 +21,7 @@ struct RenderOption {
     void (*set)(RenderSettings&, const JsonValue&);  ///< throws Error(usage)
     nlohmann::json (*get)(const RenderSettings&);    ///< as it stands in results
     std::string (*slug)(const RenderSettings&);      ///< as it stands in a cell's name
+    nlohmann::json (*schema)();                      ///< the JSON Schema of what `set` reads
 };
 
 /// Options that make the image what it is; all may be axes of a matrix.

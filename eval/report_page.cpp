@@ -82,11 +82,10 @@ std::string chart_switches_html(const ReportData& data) {
                (pressed ? "true" : "false") + "\">" + escaped(text) + "</button>";
     };
     std::string html =
-        "<div class=\"switch\" role=\"group\" aria-label=\"Where the error is measured\">" +
-        button("data-region=\"\"", "whole image", true);
+        "<div class=\"switch\" role=\"group\" aria-label=\"Region beside the whole image\">";
     for (const RegionInfo& info : kRegions) {
         const std::string name(info.name);
-        html += button("data-region=\"" + name + "\"", name, false);
+        html += button("data-region=\"" + name + "\"", name, info.region == Region::interior);
     }
     html += "</div>\n";
     if (!data.reproduction) return html;
@@ -101,36 +100,43 @@ std::string charts_html(const ReportData& data) {
     std::string html;
     for (const std::string& scene : data.scenes) {
         const std::string name = escaped(scene);
-        html += "<figure><figcaption>" + name;
-        html += "</figcaption><div class=\"plot\"><canvas role=\"img\" data-scene=\"" + name;
-        html += "\" aria-label=\"Time against psnr_float_db of every method on " + name;
-        html += "; the numbers are in the results table.\"></canvas></div></figure>\n";
+        for (const char* part : {"whole", "region"}) {
+            const bool is_whole = std::string_view(part) == "whole";
+            html += "<figure><figcaption>" + name + ", ";
+            html += is_whole ? "whole image" : "<span class=\"region-name\">interior</span>";
+            html += "</figcaption><div class=\"plot\"><canvas role=\"img\" data-scene=\"" + name;
+            html += "\" data-part=\"" + std::string(part);
+            html += "\" aria-label=\"Time against psnr_float_db of every method on " + name;
+            html += "; the numbers are in the results table.\"></canvas></div></figure>\n";
+        }
     }
     return html;
 }
 
 std::string report_page(const ReportData& data, const ReportPictures& pictures) {
-    return fill_page(kReportHtml, {{"name", escaped(name_of(data))},
-                                   {"css", std::string(kReportCss) + std::string(kReproductionCss)},
-                                   {"facts", facts_html(data)},
-                                   {"reproduction", reproduction_html(data)},
-                                   {"graphs", graphs_html(data)},
-                                   {"figures", figures_html(data, pictures)},
-                                   {"switches", chart_switches_html(data)},
-                                   {"legend", legend_html(data)},
-                                   {"charts", charts_html(data)},
-                                   {"table", table_html(data)},
-                                   {"colour_bars", colour_bars_html(pictures)},
-                                   {"cards", cards_html(data, pictures)},
-                                   {"metrics", metrics_html()},
-                                   {"regions", regions_html()},
-                                   {"contents", contents_html(data)},
-                                   {"failures", failures_html(data)},
-                                   {"provenance", provenance_html(data)},
-                                   {"data", script_json(data_json(data))},
-                                   {"chart_js", script_source(kChartJs)},
-                                   {"report_charts_js", script_source(kReportChartsJs)},
-                                   {"report_js", script_source(kReportJs)}});
+    return fill_page(kReportHtml,
+                     {{"name", escaped(name_of(data))},
+                      {"css", std::string(kReportCss) + std::string(kReproductionCss)},
+                      {"picture_sources", pictures.has_linked ? "data: file: 'self'" : "data:"},
+                      {"facts", facts_html(data)},
+                      {"reproduction", reproduction_html(data)},
+                      {"graphs", graphs_html(data)},
+                      {"figures", figures_html(data, pictures)},
+                      {"switches", chart_switches_html(data)},
+                      {"legend", legend_html(data)},
+                      {"charts", charts_html(data)},
+                      {"table", table_html(data)},
+                      {"colour_bars", colour_bars_html(pictures)},
+                      {"cards", cards_html(data, pictures)},
+                      {"metrics", metrics_html()},
+                      {"regions", regions_html()},
+                      {"contents", contents_html(data)},
+                      {"failures", failures_html(data)},
+                      {"provenance", provenance_html(data)},
+                      {"data", script_json(data_json(data))},
+                      {"chart_js", script_source(kChartJs)},
+                      {"report_charts_js", script_source(kReportChartsJs)},
+                      {"report_js", script_source(kReportJs)}});
 }
 
 }  // namespace vecino

@@ -24,6 +24,7 @@ struct ReportPictures {
     float magnitude_range = 0;  ///< shared by all cells; 0 if there is no map
     float sign_range = 0;
     bool has_non_finite = false;                    ///< in any map
+    bool has_linked = false;                        ///< some lie beside the page, for its size
     std::map<std::string, GroupPictures> by_group;  ///< groups of which a cell has an image
     std::map<std::string, std::string> references;  ///< URL by the rows' "reference_file"
     std::map<std::string, std::vector<LabelledPicture>> figures;  ///< that are no mosaic, by id

@@ -133,7 +133,9 @@ std::string item_row(const ReportData& data, const Item& item, const ItemResult&
             ours += " ± " + number_text(0.5 * (*result.ours->high - *result.ours->low), decimals);
         ours += " " + item.unit;
     }
-    std::string about = escaped(item.text) + "<details><summary>how</summary>";
+    std::string about = escaped(item.text);
+    if (!item.note.empty()) about += "<span class=\"why\">" + escaped(item.note) + "</span>";
+    about += "<details><summary>how</summary>";
     if (!result.slowest.empty())
         about += "<p>The slowest: " + group_link(data, result.slowest) + ".</p>";
     about += command_html(item_command(data, item)) + "</details>";
@@ -243,6 +245,26 @@ std::string head_row(const std::vector<std::string>& names) {
     return html + "</tr></thead><tbody>\n";
 }
 
+/// Says so where a run is not at the published parameters.
+std::string parameters_note(const ReportData& data) {
+    const Reproduction& specification = data.reproduction->specification;
+    const auto paths = std::ranges::find_if(data.groups, [&](const GroupSummary& group) {
+        return group.method == "path" &&
+               Selection().matches(group.params, specification.variants.front().where);
+    });
+    if (paths == data.groups.end()) return "";
+    std::string here;
+    std::string published;
+    for (const std::string& key : specification.times_at.mismatches(paths->params)) {
+        const Json wanted{{key, specification.times_at.at(key).front()}};
+        here += (here.empty() ? "" : ", ") + key + " " + parameter_text(paths->params, key);
+        published += (published.empty() ? "" : ", ") + key + " " + parameter_text(wanted, key);
+    }
+    if (here.empty()) return "";
+    return "<p class=\"note\"><em>Not the published parameters:</em> here " + escaped(here) +
+           "; published " + escaped(published) + ". The verdicts are those of this run.</p>\n";
+}
+
 }  // namespace
 
 std::string reproduction_html(const ReportData& data) {
@@ -250,7 +272,8 @@ std::string reproduction_html(const ReportData& data) {
     const ReportReproduction& shown = *data.reproduction;
     const Reproduction& specification = shown.specification;
     std::string html = "<section id=\"reproduction\">\n<h2>What holds of " +
-                       escaped(specification.source) + "</h2>\n" + tally(shown);
+                       escaped(specification.source) + "</h2>\n" + parameters_note(data) +
+                       tally(shown);
     html +=
         "<p class=\"note\">A claim is <em>reproduced</em> if every comparison holds, its 95 % "
         "interval over seeds excluding equality; a <em>trend</em> if most do. <em>Quality</em> is "

@@ -95,21 +95,20 @@ Claim read_claim(const JsonValue& json) {
 /// A share and a time are no numbers of each other's kind.
 std::string read_unit(const JsonValue& json, ItemQuantity quantity) {
     const std::string unit = json.string();
-    if (quantity == ItemQuantity::largest_time_share) {
-        if (unit != "%") json.fail("% for a share");
-    } else if (unit != "min" && unit != "h") {
-        json.fail("min, h for a time");
-    }
+    if (unit != "%" && unit != "min" && unit != "h") json.fail("%, min, h");
+    const bool is_share = quantity == ItemQuantity::largest_time_share;
+    if (is_share != (unit == "%")) json.fail(is_share ? "% for a share" : "min, h for a time");
     return unit;
 }
 
 Item read_item(const JsonValue& json) {
     json.require_keys(
-        {"id", "section", "text", "published", "unit", "quantity", "of", "within", "spp"});
+        {"id", "section", "text", "note", "published", "unit", "quantity", "of", "within", "spp"});
     Item item;
     item.id = json.at("id").string();
     item.section = json.at("section").string();
     item.text = json.at("text").string();
+    if (json.has("note")) item.note = json.at("note").string();
     item.published = json.at("published").number(kPositive);
     item.quantity = value_of(kItemQuantities, json.at("quantity"));
     item.unit = read_unit(json.at("unit"), item.quantity);

@@ -54,6 +54,7 @@ enum class ItemQuantity {
 /// A number that the publication states.
 struct Item {
     std::string id, section, text;
+    std::string note;  ///< what to know when reading it
     double published = 0;
     std::string unit;  ///< "%", "min" or "h"
     ItemQuantity quantity = ItemQuantity::time;

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "eval/commands.h"
 #include "eval/progress.h"
@@ -68,9 +69,19 @@ void print_counts(const RunSummary& summary) {
         summary.stale);
 }
 
+/// What can be known to be wrong before the directory is made.
+void check_inputs(const std::vector<Cell>& cells, const RunOptions& options) {
+    (void)plan_run(cells, options, [](const Cell&) { return CellState::missing; });
+    std::set<std::string> scenes;
+    for (const Cell& cell : cells) {
+        if (scenes.insert(cell.scene).second) (void)load_scene(cell.scene);
+    }
+}
+
 ExitCode run_run(const RunArguments& arguments) {
     const RunOptions options{arguments.only, parse_rerun(arguments.rerun)};
     const Matrix matrix = load_matrix(arguments.config);
+    check_inputs(expand(matrix), options);
     if (arguments.dry_run) return print_estimate(matrix, arguments, options);
     catch_interrupts();
     const RunSummary summary = run_matrix(matrix, arguments.directory, options);
@@ -93,7 +104,8 @@ void add_run_command(CLI::App& app, Action& chosen) {
     command->add_option("CONFIG", arguments->config, "matrix (JSON)")->required();
     command
         ->add_option("-o", arguments->directory, "run directory; an unfinished run there goes on")
-        ->required();
+        ->required()
+        ->check(not_empty());
     command->add_option("--only", arguments->only,
                         "run only cells whose name matches this regular expression");
     command->add_option("--rerun", arguments->rerun,
@@ -110,7 +122,9 @@ void add_report_command(CLI::App& app, Action& chosen) {
     };
     auto arguments = std::make_shared<Arguments>();
     CLI::App* const command = app.add_subcommand("report", "write the report of a run again");
-    command->add_option("DIR", arguments->directory, "run directory")->required();
+    command->add_option("DIR", arguments->directory, "run directory")
+        ->required()
+        ->check(not_empty());
     command->add_option("-o", arguments->output, "HTML file; default: DIR/report.html");
     command->callback([arguments, &chosen] {
         chosen = [arguments] {

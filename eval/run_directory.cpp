@@ -110,7 +110,8 @@ std::map<std::string, nlohmann::json> RunDirectory::rows() const {
     std::string line;
     while (std::getline(stream, line)) {
         const nlohmann::json row = nlohmann::json::parse(line, nullptr, false);
-        if (row.is_object() && row.contains("cell")) rows[row["cell"].get<std::string>()] = row;
+        if (!row.is_object() || !row.value("cell", nlohmann::json()).is_string()) continue;
+        rows[row["cell"].get<std::string>()] = row;
     }
     return rows;
 }

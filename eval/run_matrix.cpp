@@ -91,7 +91,9 @@ class Runner {
         const std::string file = directory_.file("run.json");
         if (!std::filesystem::exists(file)) return;
         const nlohmann::json before = nlohmann::json::parse(read_file(file), nullptr, false);
-        const std::string name = before.is_object() ? before.value("name", "") : "";
+        const nlohmann::json found =
+            before.is_object() ? before.value("name", nlohmann::json()) : "";
+        const std::string name = found.is_string() ? found.get<std::string>() : found.dump();
         if (name == matrix_.name) return;
         throw Error(ExitCode::usage, directory_.path() + ": found results of the matrix \"" + name +
                                          "\", allowed: \"" + matrix_.name +
@@ -112,11 +114,12 @@ class Runner {
             row.value("params", nlohmann::json()) == cell.parameters_json() &&
             row.value("reference", nlohmann::json()) == reference_json(cell);
         if (!same_question) return CellState::missing;
-        if (row.value("status", "") != "ok") return CellState::failed;
+        if (row.value("status", nlohmann::json()) != "ok") return CellState::failed;
         if (!std::filesystem::exists(directory_.file("cells/" + cell.name + "/image.exr")))
             return CellState::missing;
-        const bool same_program = row.value("build", "") == build_ &&
-                                  row.value("scene_hash", "") == scene_hashes_.at(cell.scene);
+        const bool same_program =
+            row.value("build", nlohmann::json()) == build_ &&
+            row.value("scene_hash", nlohmann::json()) == scene_hashes_.at(cell.scene);
         return same_program ? CellState::finished : CellState::stale;
     }
 

@@ -84,6 +84,15 @@ std::vector<Json> Selection::at(const std::string& key) const {
     return found == values_.end() ? std::vector<Json>{} : found->second;
 }
 
+std::vector<std::string> Selection::mismatches(const Json& params) const {
+    std::vector<std::string> keys;
+    for (const auto& [key, values] : values_) {
+        const Json value = selected_value(params, key);
+        if (!value.is_null() && !holds(values, value)) keys.push_back(key);
+    }
+    return keys;
+}
+
 Selection Selection::without(const std::string& key) const {
     Selection rest = *this;
     rest.values_.erase(key);

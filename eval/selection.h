@@ -31,6 +31,8 @@ class Selection {
     [[nodiscard]] std::vector<nlohmann::json> at(const std::string& key) const;
     /// The same without a key.
     [[nodiscard]] Selection without(const std::string& key) const;
+    /// The keys that are there but have none of the values.
+    [[nodiscard]] std::vector<std::string> mismatches(const nlohmann::json& params) const;
     /// Takes over another's values at keys that this one does not name.
     void add_missing(const Selection& other);
 

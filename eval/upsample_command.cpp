@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 
+#include "core/files.h"
 #include "core/image_io.h"
 #include "core/timing.h"
 #include "eval/commands.h"
@@ -32,20 +33,27 @@ Extent size_of(const std::string& text) {
     return settings.size;
 }
 
-SchemeParameters parameters_of(const UpsampleArguments& arguments, const Scheme& scheme) {
+SchemeParameters parameters_of(const UpsampleArguments& arguments) {
     SchemeParameters parameters;
     for (const SchemeOption& row : scheme_options()) {
         const auto given = arguments.options.find(std::string(row.name));
         if (given == arguments.options.end() || given->second.empty()) continue;
         const nlohmann::json value = option_value(given->second);
         row.set(parameters, JsonValue(value, "command line", std::string(row.flag)));
-        if (!scheme.reads(row.name)) {
-            std::fprintf(stderr, "note: %s does not read %s\n", arguments.scheme.c_str(),
-                         std::string(row.flag).c_str());
-        }
     }
     parameters.use_centre = !arguments.no_centre;
     return parameters;
+}
+
+/// Options that were given in vain.
+void print_notes(const UpsampleArguments& arguments, const Scheme& scheme) {
+    for (const SchemeOption& row : scheme_options()) {
+        const auto given = arguments.options.find(std::string(row.name));
+        if (given == arguments.options.end() || given->second.empty()) continue;
+        if (scheme.reads(row.name)) continue;
+        std::fprintf(stderr, "note: %s does not read %s\n", arguments.scheme.c_str(),
+                     std::string(row.flag).c_str());
+    }
 }
 
 struct Times {
@@ -72,21 +80,24 @@ ExitCode report(const UpsampleArguments& arguments, const Reconstruction& result
                     arguments.size.c_str(), arguments.scheme.c_str(), 1e3 * times.reconstruct_s,
                     result.fallback_pixels);
     }
+    if (result.non_finite_pixels > 0) {
+        std::fprintf(stderr, "error: %s: nothing finite for %zu low-res pixels, they are 0\n",
+                     arguments.output.c_str(), result.non_finite_pixels);
+        return ExitCode::non_finite;
+    }
     if (result.dropped_samples > 0) {
         std::fprintf(stderr, "warning: %s: %zu low-res pixels are not finite and were left out\n",
                      arguments.input.c_str(), result.dropped_samples);
     }
-    if (result.non_finite_pixels == 0) return ExitCode::ok;
-    std::fprintf(stderr, "error: %s: nothing finite for %zu low-res pixels, they are 0\n",
-                 arguments.output.c_str(), result.non_finite_pixels);
-    return ExitCode::non_finite;
+    return ExitCode::ok;
 }
 
 ExitCode run_upsample(const UpsampleArguments& arguments) {
     require_writable_extension(arguments.output);
     const Scheme& scheme = find_scheme(arguments.scheme);
-    const ReconstructionRequest request{size_of(arguments.size), parameters_of(arguments, scheme),
+    const ReconstructionRequest request{size_of(arguments.size), parameters_of(arguments),
                                         arguments.threads};
+    require_writable(arguments.output);
     const Stopwatch read_watch;
     const Frame low = load_frame(arguments.input);
     require_planes(scheme, low, arguments.input);
@@ -96,6 +107,7 @@ ExitCode run_upsample(const UpsampleArguments& arguments) {
     const double reconstruct_s = reconstruct_watch.seconds();
     const Stopwatch write_watch;
     save_image(result.image, arguments.output);
+    print_notes(arguments, scheme);
     return report(arguments, result, {read_s, reconstruct_s, write_watch.seconds()});
 }
 

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/named_values.h"
+#include "core/json_schema.h"
 #include "filters/schemes.h"
 
 namespace vecino {
 namespace {
 
-constexpr int kMostWindow = 9999;
+constexpr IntegerKind kWindow{1, 9999};  // and odd
 constexpr std::string_view kWindowAllowed = "an odd integer from 1 to 9999";
 
 constexpr Named<Weighting> kWeightings[] = {
@@ -27,10 +27,21 @@ constexpr Named<Metric> kMetrics[] = {
     {"manhattan", Metric::manhattan},
 };
 
+constexpr ChoiceKind kWeighting{kWeightings};
+constexpr ChoiceKind kMetric{kMetrics};
+constexpr RealKind kCosine{{-1.0, 1.0}};
+constexpr BooleanKind kSwitch{};
+
 void set_window(SchemeParameters& parameters, const JsonValue& json) {
-    const int window = json.integer(1, kMostWindow);
+    const int window = kWindow.read(json);
     if (window % 2 == 0) json.fail(std::string(kWindowAllowed));
     parameters.window = window;
+}
+
+nlohmann::json window_schema() {
+    nlohmann::json schema = kWindow.schema();
+    schema["not"] = {{"multipleOf", 2}};
+    return schema;
 }
 
 /// "w7"
@@ -50,28 +61,25 @@ std::string cosine_slug(const SchemeParameters& parameters) {
     return slug;
 }
 
-using Parameters = const SchemeParameters&;
+using Parameters = SchemeParameters;
 
 const SchemeOption kOptions[] = {
     {"window", "--window", kWindowAllowed, "side of the neighbourhood, in low-resolution pixels",
-     set_window, window_slug},
+     set_window, window_slug, window_schema},
     {"weighting", "--weighting", "proportional, inverse, gaussian",
      "how the weight of a neighbour follows from its distance",
-     [](SchemeParameters& p, const JsonValue& json) { p.weighting = value_of(kWeightings, json); },
-     [](Parameters p) { return name_of(kWeightings, p.weighting); }},
+     read_into<kWeighting, &Parameters::weighting>,
+     [](const Parameters& p) { return name_of(kWeightings, p.weighting); }, schema_of<kWeighting>},
     {"metric", "--metric", "euclidean, manhattan", "how distances in the image are measured",
-     [](SchemeParameters& p, const JsonValue& json) { p.metric = value_of(kMetrics, json); },
-     [](Parameters p) { return name_of(kMetrics, p.metric); }},
+     read_into<kMetric, &Parameters::metric>,
+     [](const Parameters& p) { return name_of(kMetrics, p.metric); }, schema_of<kMetric>},
     {"min_normal_cosine", "--min-normal-cosine", "a number from -1 to 1",
      "only neighbours count whose normal has a larger cosine to the centre's",
-     [](SchemeParameters& p, const JsonValue& json) {
-         p.min_normal_cosine = json.real({-1.0, 1.0});
-     },
-     cosine_slug},
+     read_into<kCosine, &Parameters::min_normal_cosine>, cosine_slug, schema_of<kCosine>},
     {"use_centre", "--no-centre", "true or false",
-     "whether a pixel counts among its own neighbours",
-     [](SchemeParameters& p, const JsonValue& json) { p.use_centre = json.boolean(); },
-     [](Parameters p) { return std::string(p.use_centre ? "centre" : "no_centre"); }},
+     "whether a pixel counts among its own neighbours", read_into<kSwitch, &Parameters::use_centre>,
+     [](const Parameters& p) { return std::string(p.use_centre ? "centre" : "no_centre"); },
+     schema_of<kSwitch>},
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "filters/window.h"
 
@@ -174,6 +175,8 @@ Reconstruction reconstruct(const Frame& low, const Scheme& scheme,
                            const ReconstructionRequest& request) {
     require_sound(low, request);
     require_planes(scheme, low, "low-resolution frame");
+    require_memory(bytes_of({Plane::radiance}, request.size),
+                   "image of " + to_string(request.size));
     Reconstruction result = scheme.run(low, request.parameters, request.threads);
     result.image = replicate(result.image, request.size, request.threads);
     return result;

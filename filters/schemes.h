@@ -52,6 +52,7 @@ struct SchemeOption {
     void (*set)(SchemeParameters&, const JsonValue&);
     /// The value of this option as it stands in a cell's name ("w7", "inverse", ...).
     std::string (*slug)(const SchemeParameters&);
+    nlohmann::json (*schema)();  ///< the JSON Schema of what `set` reads
 };
 
 /// All options of all schemes.
@@ -117,7 +118,8 @@ struct ReconstructionRequest {
 /// Rebuilds an image of the given size. Every full-res pixel takes the value of its corresponding
 /// low-res pixel (Algorithms 3, 4, 5, 7, 8), so values are computed once per low-res pixel and
 /// replicated. Throws Error(mismatch) if size is smaller than the low-res frame or a plane is
-/// missing, Error(usage) if the window is even or below 1. The result is finite.
+/// missing, Error(usage) if the window is even or below 1, Error(file) if the machine lacks the
+/// memory. The result is finite.
 Reconstruction reconstruct(const Frame& low, const Scheme& scheme,
                            const ReconstructionRequest& request);
 

@@ -11,29 +11,13 @@
 #include "core/planes.h"
 #include "tests/catch.h"
 #include "tests/error_of.h"
+#include "tests/foreign_image.h"
 #include "tests/temp_dir.h"
 
 using namespace vecino;
 using Names = std::vector<std::string>;
 
 namespace {
-
-OIIO::ImageSpec make_spec(Extent size, const Names& channels, const OIIO::TypeDesc& type) {
-    OIIO::ImageSpec spec(size.width, size.height, static_cast<int>(channels.size()), type);
-    spec.channelnames = channels;
-    return spec;
-}
-
-template <class Value>
-void write_foreign(const std::string& path, const OIIO::ImageSpec& spec,
-                   const std::vector<Value>& values) {
-    REQUIRE(values.size() == spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
-    const auto output = OIIO::ImageOutput::create(path);
-    REQUIRE(output);
-    REQUIRE(output->open(path, spec));
-    REQUIRE(output->write_image(spec.format, values.data()));
-    REQUIRE(output->close());
-}
 
 /// An EXR file of one pixel.
 std::string write_exr_pixel(const TempDir& dir, const Names& channels,

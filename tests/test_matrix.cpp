@@ -90,40 +90,6 @@ TEST_CASE("equal samples round where the factor does not divide, and say so", "[
     CHECK(cell->samples_ratio() == 1.0);
 }
 
-TEST_CASE("a faulty matrix is refused: where, what was found, what is allowed", "[matrix]") {
-    struct Fault {
-        const char* from;
-        const char* to;
-        const char* message;
-    };
-    const Fault fault = GENERATE(values<Fault>({
-        {"\"axes\"", "\"axis\"",
-         "/: found unknown key \"axis\", allowed: $schema, extends, name, axes, exclude, include, "
-         "fixed, "
-         "reference, measure, reproduction"},
-        {"\"mean\"", "\"meen\"",
-         "/axes/scheme/1: found \"meen\", allowed: nearest, mean, distance2d, distance3d, "
-         "distance3d_normal"},
-        {"[3, 5]", "[3, 4]", "/axes/window/1: found 4, allowed: an odd integer from 1 to 9999"},
-        {"[3, 5]", "[]", "/axes/window: found [], allowed: at least one value"},
-        {"\"spp\": 4", "\"spp\": 0", "/fixed/spp: found 0, allowed: an integer of at least 1"},
-        {"[8, 6]", "[8]",
-         "/fixed/size: found [8], allowed: WxH on the command line, [W, H] in a matrix"},
-        {"\"repeat\": 2", "\"repeat\": 2, \"gates\": 1",
-         "/measure: found unknown key \"gates\", allowed: repeat"},
-        {"\"repeat\": 2", "\"repeat\": 0",
-         "/measure/repeat: found 0, allowed: an integer from 1 to 1000"},
-        {"\"spp\": 64", "\"size\": 64",
-         "/reference: found unknown key \"size\", allowed: spp, light_sampling, sampler, seed"},
-    }));
-    const TempDir dir;
-    std::string text = tiny_matrix();
-    text.replace(text.find(fault.from), std::string(fault.from).size(), fault.to);
-    const Error error = error_of([&] { expand(write_and_load(dir, text)); });
-    CHECK(std::string(error.what()) == dir.path("matrix.json") + ": " + fault.message);
-    CHECK(error.code() == ExitCode::usage);
-}
-
 TEST_CASE("a run leaves a row, an image and an error image per cell", "[matrix]") {
     const TempDir dir;
     const Matrix matrix = write_and_load(dir, tiny_matrix());

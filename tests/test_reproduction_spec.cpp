@@ -142,7 +142,7 @@ TEST_CASE("a malformed reproduction is refused in one line", "[reproduction_spec
         {R"([{"op": "replace", "path": "/reproduction/items/0/unit", "value": "min"}])",
          "/reproduction/items/0/unit: found \"min\", allowed: % for a share"},
         {R"([{"op": "replace", "path": "/reproduction/items/1/unit", "value": "days"}])",
-         "/reproduction/items/1/unit: found \"days\", allowed: min, h for a time"},
+         "/reproduction/items/1/unit: found \"days\", allowed: %, min, h"},
         {R"([{"op": "replace", "path": "/reproduction/items/1/unit", "value": "%"}])",
          "/reproduction/items/1/unit: found \"%\", allowed: min, h for a time"},
         {R"([{"op": "remove", "path": "/reproduction/items/0/within"}])",

@@ -100,7 +100,8 @@ TEST_CASE("the time of a group is the median over its seeds", "[summary]") {
     CHECK(groups.at(0).time_s == 2.0);
 }
 
-TEST_CASE("the time share is a part of the time of the path tracing that a row names", "[summary]") {
+TEST_CASE("the time share is a part of the time of the path tracing that a row names",
+          "[summary]") {
     nlohmann::json elsewhere = row_taking("path", 1, 100.0);
     elsewhere["scene"] = "hall";
     elsewhere["group"] = "hall.path";

@@ -10,9 +10,11 @@ document.documentElement.classList.add("js");
 const charts = (() => {
     const hidden = new Set();
     const hasVariants = report.groups.some((g) => g.variants.length > 0);
-    const level = (g) => (region === "" ? g.psnr_float_db : g.regions[region]);
+    // Every scene has a chart of the whole image and one of a region that the reader picks.
+    const regionOf = (canvas) => (canvas.dataset.part === "region" ? region : "");
+    const level = (g, where) => (where === "" ? g.psnr_float_db : g.regions[where]);
     const inVariant = (g) => !hasVariants || variant === "" || g.variants.includes(Number(variant)) || g.method === "blocky_ceiling";
-    let region = "";
+    let region = "interior";
     let variant = "0";
     let points = [];
     let drawn = [];
@@ -22,7 +24,9 @@ const charts = (() => {
     /// The same for all scenes, so that charts compare; at least a factor of 4 of time and 1 dB.
     function limits() {
         const times = points.map((g) => g.time_s);
-        const levels = points.map(level).flatMap((e) => [e.mean, e.low ?? e.mean, e.high ?? e.mean]);
+        const bounds = hidden.has("blocky_ceiling") ? [] : report.groups.filter((g) => g.method === "blocky_ceiling");
+        const levels = ["", region].flatMap((where) => [...points, ...bounds].map((g) => level(g, where)).filter(Boolean))
+            .flatMap((e) => [e.mean, e.low ?? e.mean, e.high ?? e.mean]);
         const centre = Math.sqrt(Math.min(...times) * Math.max(...times));
         const least = Math.min(Math.min(...times) / 1.25, centre / 2);
         const most = Math.max(Math.max(...times) * 1.25, centre * 2);
@@ -53,15 +57,16 @@ const charts = (() => {
         return ticks.filter((_, i) => i % stride === 0).map((value) => ({ value }));
     }
 
-    function dataset(style, scene) {
+    function dataset(style, canvas) {
+        const where = regionOf(canvas);
         const isPath = style.method === "path";
         const isLine = ["crossRot", "cross", "star"].includes(style.shape);
         const tone = colour(`--c${style.colour}`);
         return {
             label: style.method,
             hidden: hidden.has(style.method),
-            data: points.filter((g) => g.scene === scene && g.method === style.method)
-                .map((g) => ({ x: g.time_s, y: level(g).mean, group: g })),
+            data: points.filter((g) => g.scene === canvas.dataset.scene && g.method === style.method && level(g, where))
+                .map((g) => ({ x: g.time_s, y: level(g, where).mean, level: level(g, where), group: g })),
             pointStyle: style.shape === "triangleDown" ? "triangle" : style.shape,
             rotation: style.shape === "triangleDown" ? 180 : 0,
             radius: isPath ? 7 : 5,
@@ -129,10 +134,11 @@ const charts = (() => {
         if (hidden.has("blocky_ceiling")) return;
         let lowest = Infinity; // where the label below stands
         const ceilings = report.groups
-            .filter((g) => g.method === "blocky_ceiling" && g.scene === chart.canvas.dataset.scene && level(g))
-            .sort((a, b) => level(a).mean - level(b).mean);
+            .filter((g) => g.method === "blocky_ceiling" && g.scene === chart.canvas.dataset.scene && level(g, regionOf(chart.canvas)))
+            .map((g) => ({ factor: g.params.reduction, db: level(g, regionOf(chart.canvas)).mean }))
+            .sort((a, b) => a.db - b.db);
         for (const g of ceilings) {
-            const y = chart.scales.y.getPixelForValue(level(g).mean);
+            const y = chart.scales.y.getPixelForValue(g.db);
             line(chart, colour("--soft"), (ctx, area) => {
                 ctx.setLineDash([2, 3]);
                 ctx.lineWidth = 1.25;
@@ -140,7 +146,7 @@ const charts = (() => {
                 ctx.lineTo(area.right, y);
             });
             lowest = Math.min(y, lowest - 11);
-            lineLabel(chart, `f${g.params.reduction}`, colour("--soft"), lowest);
+            lineLabel(chart, `f${g.factor}`, colour("--soft"), lowest);
         }
     }
 
@@ -167,7 +173,7 @@ const charts = (() => {
             line(chart, data.tone, (ctx, area) => {
                 ctx.lineWidth = 1.25;
                 for (const p of data.data) {
-                    const { low, high } = level(p.group);
+                    const { low, high } = p.level;
                     if (low === null) continue;
                     const x = chart.scales.x.getPixelForValue(p.x);
                     const bottom = chart.scales.y.getPixelForValue(low);
@@ -185,7 +191,7 @@ const charts = (() => {
 
     function pointText(p) {
         const { time_share: share } = p.group;
-        const e = level(p.group);
+        const e = p.level;
         const interval = e.low === null ? "" : `, 95 % from ${e.low.toFixed(2)}${e.high === null ? "" : ` to ${e.high.toFixed(2)}`}`;
         const part = share > 0 ? `, ${(100 * share).toFixed(1)} % of path` : "";
         return [
@@ -207,7 +213,7 @@ const charts = (() => {
                 afterBuildTicks: (axis) => { axis.ticks = logTicks(axis.min, axis.max, axis.width || axis.maxWidth); },
             },
             y: {
-                min: range.y[0], max: range.y[1], grid, border, title: title(`psnr_float_db${region ? ` of ${region}` : ""}, dB (higher is better)`),
+                min: range.y[0], max: range.y[1], grid, border, title: title("psnr_float_db, dB (higher is better)"),
                 ticks: { ...ticks, stepSize: range.step, callback: (value) => value.toFixed(range.step < 1 ? 1 : 0) },
             },
         };
@@ -239,17 +245,18 @@ const charts = (() => {
 
     function draw() {
         drawn.forEach((chart) => chart.destroy());
-        points = report.groups.filter((g) => g.time_s > 0 && level(g) && inVariant(g));
+        points = report.groups.filter((g) => g.time_s > 0 && g.psnr_float_db && inVariant(g));
         if (points.length === 0) {
             document.querySelector(".charts").replaceChildren("No cell has both a time and a psnr_float_db to draw.");
             return;
         }
         const range = limits();
+        all(".region-name").forEach((name) => { name.textContent = region; });
         const plugins = [{ id: "lines", beforeDatasetsDraw: (c) => { drawCeilings(c); drawFront(c); drawPathLevel(c); drawIntervals(c); } }];
         Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
         drawn = all("canvas[data-scene]").map((canvas) => new Chart(canvas, {
             type: "scatter",
-            data: { datasets: report.methods.map((style) => dataset(style, canvas.dataset.scene)) },
+            data: { datasets: report.methods.map((style) => dataset(style, canvas)) },
             options: options(range),
             plugins,
         }));

@@ -182,7 +182,15 @@
         image.src = from.src;
     }
 
+    /// A picture beside the file is gone once the file was moved.
+    function missing(event) {
+        const note = document.createElement("span");
+        note.textContent = `not in this file: ${event.target.getAttribute("src")}`;
+        event.target.replaceWith(note);
+    }
+
     all("button[data-of]").forEach(borrow);
+    all(".shot img").forEach((image) => image.addEventListener("error", missing));
     if (cards.length === 0) return;
     all("button.shot").forEach((shot) => shot.addEventListener("click", () => open(shot)));
     all("[data-view]", viewer).forEach((b) => b.addEventListener("click", () => flip(Number(b.dataset.view))));

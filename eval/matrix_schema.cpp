@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/matrix_schema.h"
+
+#include <string>
+
+#include "core/json_schema.h"
+#include "eval/axes.h"
+#include "eval/budget.h"
+#include "eval/render_options.h"
+#include "filters/schemes.h"
+
+namespace vecino {
+namespace {
+
+using nlohmann::json;
+using enum Presence;
+
+constexpr TextKind kText{};
+constexpr IntegerKind kRepeat{1, 1000};
+
+json scheme_schema() {
+    json schema;
+    for (const Scheme& scheme : all_schemes()) schema["enum"].push_back(scheme.name);
+    return schema;
+}
+
+json method_schema() {
+    const auto names = all_methods();
+    return {{"enum", std::vector<std::string>(names.begin(), names.end())}};
+}
+
+json budget_schema() {
+    return {{"enum", budget_names()}};
+}
+
+// What a cell is made of, beside the options of renders and schemes.
+constexpr DescribedKey kCellKeys[] = {
+    {"scene", optional, "a scene file, from the folder of the matrix", schema_of<kText>},
+    {"scheme", optional, "how the large image is rebuilt", scheme_schema},
+    {"method", optional, "a render in place of a scheme", method_schema},
+    {"budget", optional, "how many samples a low-resolution frame gets", budget_schema},
+};
+
+/// The keys of a cell, each with one value.
+json cell_schema() {
+    json schema = object_schema(kCellKeys);
+    const auto add = [&](const auto& row) {
+        json& property = schema["properties"][std::string(row.name)] = row.schema();
+        property["description"] = row.summary;
+    };
+    for (const RenderOption& row : render_options()) add(row);
+    for (const SchemeOption& row : scheme_options()) add(row);
+    return schema;
+}
+
+// Where the schemas of single values and of axes stand in the document: said once, then named.
+const std::string kOneValue = "#/properties/fixed/properties/";
+const std::string kAxes = "#/properties/axes";
+
+/// The keys of a cell, each with one value or several.
+json axes_schema() {
+    json schema = cell_schema();
+    for (const auto& [key, property] : schema["properties"].items()) {
+        const json one{{"$ref", kOneValue + key}};
+        property = {{"anyOf", {one, array_schema(one, {1, 0})}},
+                    {"description", property["description"]}};
+    }
+    schema["not"] = {{"required", {"method", "scheme"}}};
+    return schema;
+}
+
+json patterns_schema() {
+    return array_schema({{"$ref", kAxes}}, {0, 0});
+}
+
+json reference_schema() {
+    json schema{{"type", "object"}, {"additionalProperties", false}};
+    for (const std::string key : {"spp", "light_sampling", "sampler", "seed"}) {
+        schema["properties"][key] = {{"$ref", kOneValue + key}};
+    }
+    return schema;
+}
+
+constexpr DescribedKey kMeasureKeys[] = {
+    {"repeat", optional, "timings of a short stage; the median counts", schema_of<kRepeat>},
+};
+
+constexpr DescribedKey kMatrixKeys[] = {
+    {"$schema", optional, "the JSON Schema of matrices, for editors", schema_of<kText>},
+    {"extends", optional, "a matrix that says what this one does not, from its folder",
+     schema_of<kText>},
+    {"name", required, "of the run", schema_of<kText>},
+    {"axes", optional, "every combination of their values is a cell", axes_schema},
+    {"exclude", optional, "cells that match one of these are left out", patterns_schema},
+    {"include", optional, "cells beside those of the axes, whose values these replace",
+     patterns_schema},
+    {"fixed", optional, "values of every cell", cell_schema},
+    {"reference", optional, "the render that cells are held against", reference_schema},
+    {"measure", optional, "", [] { return object_schema(kMeasureKeys); }},
+    {"reproduction", optional, "what a publication states, to be held against the results",
+     reproduction_schema},
+};
+
+}  // namespace
+
+json matrix_schema() {
+    json schema = object_schema(kMatrixKeys);
+    schema["anyOf"] = {{{"required", {"extends"}}}, {{"required", {"axes", "reference"}}}};
+    return document_schema("An evaluation matrix of vecino", schema);
+}
+
+}  // namespace vecino
