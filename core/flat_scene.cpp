@@ -25,6 +25,10 @@ float largest(const glm::vec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+bool is_perpendicular(glm::vec3 a, glm::vec3 b) {
+    return std::abs(glm::dot(a, b)) <= 1e-6f * glm::length(a) * glm::length(b);
+}
+
 bool emits(const Material& material) {
     return material.emission != glm::vec3(0.0f);
 }
@@ -64,7 +68,9 @@ class Flattener {
         add_triangle({{p[0], p[2], p[3]}});
         if (!emits(*material_)) return;
         if (p[0] + p[2] == p[1] + p[3]) {
-            add_flat_light(LightKind::parallelogram, {p[0], p[1], p[3]});
+            const bool is_rectangle = is_perpendicular(p[1] - p[0], p[3] - p[0]);
+            add_flat_light(is_rectangle ? LightKind::rectangle : LightKind::parallelogram,
+                           {p[0], p[1], p[3]});
         } else {
             add_flat_light(LightKind::triangle, {p[0], p[1], p[2]});
             add_flat_light(LightKind::triangle, {p[0], p[2], p[3]});

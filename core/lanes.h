@@ -77,8 +77,12 @@ inline Float min(Float a, Float b) {
 inline Float abs(Float v) {
     return (Float)((Int)v & 0x7FFFFFFF);
 }
+/// Of a magnitude that is not negative.
+inline Float copysign(Float magnitude, Float sign) {
+    return (Float)(((Int)sign & (Int)splat(0x80000000u)) | (Int)magnitude);
+}
 inline Float copysign(float magnitude, Float sign) {
-    return (Float)(((Int)sign & (Int)splat(0x80000000u)) | (Int)splat(magnitude));
+    return copysign(splat(magnitude), sign);
 }
 
 inline Float3 operator+(Float3 a, Float3 b) {
@@ -95,6 +99,9 @@ inline Float3 operator*(Float3 a, Float b) {
 }
 inline Float dot(Float3 a, Float3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Float3 cross(Float3 a, Float3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline Float3 normalise(Float3 v) {
     return v * (1.0f / sqrt(dot(v, v)));

@@ -6,12 +6,11 @@
 
 #include "core/lanes.h"
 #include "core/random_lanes.h"
+#include "core/rectangle_lanes.h"
 #include "core/trace_task.h"
 
 namespace vecino {
 namespace {
-
-constexpr float kPi = 3.14159265358979f;
 
 /// Two unit vectors that make a right-handed basis with a third (Duff et al., JCGT 2017).
 struct Basis {
@@ -28,7 +27,7 @@ inline Basis basis_around(Float3 n) {
 struct PickedLight {
     Float3 origin, edge1, edge2, normal, radiance;
     Float area, radius, offset, probability;
-    Mask sphere, triangle;
+    Mask sphere, triangle, rectangle;
     Float u;  ///< the random number, stretched to [0, 1) again
 };
 
@@ -51,6 +50,7 @@ inline PickedLight pick_light(const TraceTask& task, Float u) {
     alignas(64) float gathered[kFields][W];
     alignas(64) std::int32_t sphere[W];
     alignas(64) std::int32_t triangle[W];
+    alignas(64) std::int32_t rectangle[W];
     alignas(64) float stretched[W];
     for (int i = 0; i < W; ++i) {
         const LightRecord& light = task.lights[task.light_count > 1 ? pick_index(task, u[i]) : 0];
@@ -59,6 +59,7 @@ inline PickedLight pick_light(const TraceTask& task, Float u) {
         for (int k = 0; k < kFields; ++k) gathered[k][i] = fields[k];
         sphere[i] = light.kind == LightKind::sphere ? -1 : 0;
         triangle[i] = light.kind == LightKind::triangle ? -1 : 0;
+        rectangle[i] = light.kind == LightKind::rectangle ? -1 : 0;
         const float p = light.selection_probability;
         const float inside = (u[i] - (light.selection_cdf - p)) / p;
         stretched[i] = inside < 0.0f ? 0.0f : inside > 0.99999994f ? 0.99999994f : inside;
@@ -78,6 +79,7 @@ inline PickedLight pick_light(const TraceTask& task, Float u) {
             load<Float>(gathered[18]),
             load<Mask>(sphere),
             load<Mask>(triangle),
+            load<Mask>(rectangle),
             load<Float>(stretched)};
 }
 

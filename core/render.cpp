@@ -242,6 +242,8 @@ Render render(const Scene& scene, const RenderSettings& settings, const Progress
     task.height = size.height;
     task.max_depth = settings.max_depth;
     task.next_event_estimation = settings.light_sampling == LightSampling::nee;
+    task.by_solid_angle = settings.light_point == LightPoint::solid_angle;
+    task.control_variate = settings.control_variate == ControlVariate::irradiance;
     task.sobol = settings.sampler == Sampler::sobol;
     task.streams = result.frame.variance.empty() ? 1 : kStreams;
     task.seed = settings.seed;

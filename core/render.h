@@ -21,6 +21,19 @@ enum class LightSampling {
     nee,   ///< next-event estimation: one shadow ray per surface
 };
 
+/// How next-event estimation picks points on a rectangular emitter. Spheres are sampled by the cone
+/// they fill, all else by area.
+enum class LightPoint {
+    area,         ///< uniform over the surface
+    solid_angle,  ///< uniform over the solid angle (Urena et al. 2013)
+};
+
+/// What next-event estimation knows of a rectangular emitter beside one point on it.
+enum class ControlVariate {
+    none,
+    irradiance,  ///< exact irradiance, less what of it is hidden: no noise where all is in sight
+};
+
 /// Where the random numbers of a path come from.
 enum class Sampler {
     independent,  ///< hashes: pcg4d (Jarzynski and Olano, JCGT 2020)
@@ -40,8 +53,10 @@ struct RenderSettings {
     int reduction = 1;      ///< >= 1: the traced frame is reduced(size, reduction)
     int spp = 64;           ///< samples (paths) per traced pixel, >= 1
     int max_depth = 2;      ///< surface bounces that may carry light, 0 to 1000
-    LightSampling light_sampling = LightSampling::nee;  ///< how a path finds light
-    Sampler sampler = Sampler::sobol;                   ///< where random numbers come from
+    LightSampling light_sampling = LightSampling::nee;            ///< how a path finds light
+    LightPoint light_point = LightPoint::solid_angle;             ///< of nee
+    ControlVariate control_variate = ControlVariate::irradiance;  ///< of nee
+    Sampler sampler = Sampler::sobol;             ///< where random numbers come from
     FirstHit first_hit = FirstHit::first_sample;  ///< which ray the first-hit planes come from
     std::uint32_t seed = 1;                       ///< any; renders of other seeds differ in noise
     Planes planes = Planes::all();                ///< beside radiance, which is always made

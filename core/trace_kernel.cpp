@@ -12,6 +12,9 @@
 namespace vecino {
 namespace {
 
+// Steradians below which a rectangle is sampled by area.
+constexpr float kLeastSolidAngle = 2e-3f;
+
 struct Ray {
     Float3 origin, direction;
 };
@@ -46,6 +49,11 @@ class Tracer {
     const TraceTask& task_;
     std::uint64_t rays_ = 0;
 };
+
+/// Where shading and geometry agree on the horizon.
+Mask is_flat(const Surface& s) {
+    return dot(s.shading_normal, s.normal) > 0.999999f;
+}
 
 RayPacket<W> pack(const Ray& ray, Float t_far, Mask active) {
     RayPacket<W> packet;
@@ -173,19 +181,42 @@ Float3 cosine_direction(Float3 n, Pair u) {
     return normalise(basis.tangent * x + basis.bitangent * y + n * z);
 }
 
+/// A point on the picked emitter, for its kind; where it is a rectangle that fills a solid angle
+/// worth the trouble, also the rectangle as the surface sees it.
+struct LightSample {
+    LightPoint point;
+    SphericalRectangle rectangle;
+    Mask has_rectangle;
+};
+
+LightSample sample_light(const TraceTask& task, const PickedLight& light, Float3 from, Pair u) {
+    LightSample sample{sample_area(light, from, u), {}, Mask{}};
+    const auto replace = [&](Mask where, const LightPoint& by) {
+        sample.point.position = select(where, by.position, sample.point.position);
+        sample.point.normal = select(where, by.normal, sample.point.normal);
+        sample.point.inverse_pdf = select(where, by.inverse_pdf, sample.point.inverse_pdf);
+    };
+    if (any(light.sphere)) replace(light.sphere, sample_sphere(light, from, u));
+    if (!(task.by_solid_angle || task.control_variate) || !any(light.rectangle)) return sample;
+    const Float3 to_corner = light.origin - from;
+    sample.rectangle = spherical_rectangle(to_corner, light.edge1, light.edge2);
+    // Sums of angles lose the digits of a small one, over which sampling by area is as good.
+    sample.has_rectangle = light.rectangle & (dot(to_corner, light.normal) < 0.0f) &
+                           (sample.rectangle.solid_angle > kLeastSolidAngle);
+    if (task.by_solid_angle) {
+        const Float3 position = from + sample_rectangle(sample.rectangle, u);
+        replace(sample.has_rectangle, {position, light.normal, sample.rectangle.solid_angle});
+    }
+    return sample;
+}
+
 /// Light that arrives at a surface straight from one emitter, times cos / pi.
 Float3 sample_direct(Tracer& tracer, const TraceTask& task, const Surface& s, Mask active,
                      Pair random) {
     const PickedLight light = pick_light(task, random.u);
     const Float3 from = s.position + s.normal * s.offset;
-    const Pair u = {light.u, random.v};
-    LightPoint point = sample_area(light, from, u);
-    if (any(light.sphere)) {
-        const LightPoint on_sphere = sample_sphere(light, from, u);
-        point.position = select(light.sphere, on_sphere.position, point.position);
-        point.normal = select(light.sphere, on_sphere.normal, point.normal);
-        point.inverse_pdf = select(light.sphere, on_sphere.inverse_pdf, point.inverse_pdf);
-    }
+    const LightSample sample = sample_light(task, light, from, {light.u, random.v});
+    const LightPoint& point = sample.point;
     const Float3 to_light = point.position + point.normal * light.offset - from;
     const Float distance = sqrt(dot(to_light, to_light));
     const Ray shadow = {from, to_light * (1.0f / distance)};
@@ -195,8 +226,16 @@ Float3 sample_direct(Tracer& tracer, const TraceTask& task, const Surface& s, Ma
     const Float3 zero{};
     if (!any(lit)) return zero;
     const Mask visible = lit & ~tracer.occluded(shadow, distance, lit);
-    const Float weight = cosine * point.inverse_pdf * (1.0f / kPi) / light.probability;
-    return select(visible, light.radiance * weight, zero);
+    const Float3 radiance = light.radiance * (1.0f / light.probability);
+    const Float unhidden = cosine * point.inverse_pdf * (1.0f / kPi);
+    Float weight = select(visible, unhidden, splat(0.0f));
+    if (task.control_variate && any(sample.has_rectangle)) {
+        const Irradiance exact = rectangle_irradiance(sample.rectangle, s.shading_normal);
+        const Mask usable = sample.has_rectangle & exact.exact & lit & is_flat(s);
+        const Float hidden = select(visible, splat(0.0f), unhidden);
+        weight = select(usable, exact.value - hidden, weight);
+    }
+    return select(lit, radiance * weight, zero);
 }
 
 void add(float (&plane)[3][kBlockSamples], int at, Float3 light) {

@@ -23,7 +23,7 @@ struct alignas(64) SurfaceRecord {
     std::int32_t padding[4];
 };
 
-enum class LightKind : std::int32_t { parallelogram, triangle, sphere };
+enum class LightKind : std::int32_t { parallelogram, rectangle, triangle, sphere };
 
 /// An emitter, as next-event estimation sees it.
 struct LightRecord {
@@ -65,6 +65,8 @@ struct TraceTask {
 
     std::int32_t max_depth;
     bool next_event_estimation;
+    bool by_solid_angle;   ///< points on rectangles are uniform over it, else over their area
+    bool control_variate;  ///< of rectangles: exact light less what is hidden
     bool sobol;
     /// 1, or kStreams: Sobol samples are dealt to that many independent scramblings, sample i to i
     /// % streams. Their spread is the only sound estimate of the variance, at the price of about 2

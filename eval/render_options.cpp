@@ -24,6 +24,14 @@ constexpr Named<LightSampling> kLightSamplings[] = {
     {"none", LightSampling::none},
     {"nee", LightSampling::nee},
 };
+constexpr Named<LightPoint> kLightPoints[] = {
+    {"area", LightPoint::area},
+    {"solid_angle", LightPoint::solid_angle},
+};
+constexpr Named<ControlVariate> kControlVariates[] = {
+    {"none", ControlVariate::none},
+    {"irradiance", ControlVariate::irradiance},
+};
 constexpr Named<Sampler> kSamplers[] = {
     {"independent", Sampler::independent},
     {"sobol", Sampler::sobol},
@@ -33,6 +41,8 @@ constexpr Named<FirstHit> kFirstHits[] = {
     {"centre", FirstHit::centre},
 };
 constexpr ChoiceKind kLightSampling{kLightSamplings};
+constexpr ChoiceKind kLightPoint{kLightPoints};
+constexpr ChoiceKind kControlVariate{kControlVariates};
 constexpr ChoiceKind kSampler{kSamplers};
 constexpr ChoiceKind kFirstHit{kFirstHits};
 
@@ -71,6 +81,14 @@ const RenderOption kOptions[] = {
      read_into<kLightSampling, &RenderSettings::light_sampling>,
      [](Settings s) { return nlohmann::json(name_of(kLightSamplings, s.light_sampling)); },
      [](Settings s) { return name_of(kLightSamplings, s.light_sampling); }, schema_of<kLightSampling>},
+    {"light_point", "--light-point", "area, solid_angle", "of rectangular emitters: points uniform over which",
+     read_into<kLightPoint, &RenderSettings::light_point>,
+     [](Settings s) { return nlohmann::json(name_of(kLightPoints, s.light_point)); },
+     [](Settings s) { return name_of(kLightPoints, s.light_point); }, schema_of<kLightPoint>},
+    {"control_variate", "--control-variate", "none, irradiance", "of rectangular emitters: irradiance adds what is known exactly",
+     read_into<kControlVariate, &RenderSettings::control_variate>,
+     [](Settings s) { return nlohmann::json(name_of(kControlVariates, s.control_variate)); },
+     [](Settings s) { return name_of(kControlVariates, s.control_variate); }, schema_of<kControlVariate>},
     {"sampler", "--sampler", "independent, sobol", "sobol is Owen-scrambled",
      read_into<kSampler, &RenderSettings::sampler>,
      [](Settings s) { return nlohmann::json(name_of(kSamplers, s.sampler)); },
