@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/embree_scene.h"
 
+#include "core/embree_geometry.h"
+
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -8,6 +10,7 @@
 #endif
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -15,69 +18,16 @@
 #include <string>
 #include <vector>
 
-// The sphere test is compiled for several instruction sets; the loader picks one.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define VECINO_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define VECINO_CLONES
-#endif
-
 namespace vecino {
 namespace {
 
-constexpr int kMaxPacket = 16;
-constexpr unsigned kTriangles = 0;
-constexpr unsigned kSpheres = 1;
+// Up to so many parallelograms are ours; with more, Embree's own quads are as fast: it goes on with
+// single rays where packets fall apart deep down a tree.
+constexpr std::size_t kMostParallelograms = 2048;
 
-struct SphereData {
-    float center[3];
-    float radius;
-};
-
-// Up to 16 rays against one sphere: t of the nearest hit in (t_near, t_far), or t_far where there
-// is none. The discriminant is taken from the distance of the centre to the ray, which keeps its
-// digits when the sphere is far away (Haines et al., Ray Tracing Gems, chapter 7).
-VECINO_CLONES void nearest_sphere_hits(const SphereData& sphere, const float* rays, unsigned n,
-                                       float* __restrict nearest) {
-    const float* const ox = rays;
-    const float* const oy = rays + n;
-    const float* const oz = rays + 2 * n;
-    const float* const t_near = rays + 3 * n;
-    const float* const dx = rays + 4 * n;
-    const float* const dy = rays + 5 * n;
-    const float* const dz = rays + 6 * n;
-    const float* const t_far = rays + 8 * n;
-    for (unsigned i = 0; i < n; ++i) {
-        const float fx = sphere.center[0] - ox[i];
-        const float fy = sphere.center[1] - oy[i];
-        const float fz = sphere.center[2] - oz[i];
-        const float a = dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i];
-        const float along = fx * dx[i] + fy * dy[i] + fz * dz[i];
-        const float closest = along / a;
-        const float ex = fx - closest * dx[i];
-        const float ey = fy - closest * dy[i];
-        const float ez = fz - closest * dz[i];
-        const float rr = sphere.radius * sphere.radius;
-        const float discriminant = rr - (ex * ex + ey * ey + ez * ez);
-        const float root = std::sqrt(a * (discriminant > 0.0f ? discriminant : 0.0f));
-        const float q = along + (along < 0.0f ? -root : root);
-        const float c = fx * fx + fy * fy + fz * fz - rr;
-        const float s = c / q;
-        const float t = q / a;
-        const float first = s < t ? s : t;
-        const float second = s < t ? t : s;
-        float hit = first > t_near[i] ? first : second;
-        hit = hit > t_near[i] && hit < t_far[i] && discriminant > 0.0f ? hit : t_far[i];
-        nearest[i] = hit;
-    }
-}
-
-void sphere_bounds(const RTCBoundsFunctionArguments* args) {
-    const auto& sphere = static_cast<const SphereData*>(args->geometryUserPtr)[args->primID];
+void bounds_of(const SphereShape& sphere, RTCBounds& box) {
     // One part in 2^20 wider, so that rounding cannot put a hit outside of its box.
     const float radius = sphere.radius * (1.0f + 1e-6f);
-    RTCBounds& box = *args->bounds_o;
     box.lower_x = sphere.center[0] - radius;
     box.lower_y = sphere.center[1] - radius;
     box.lower_z = sphere.center[2] - radius;
@@ -86,31 +36,41 @@ void sphere_bounds(const RTCBoundsFunctionArguments* args) {
     box.upper_z = sphere.center[2] + radius;
 }
 
-void intersect_sphere(const RTCIntersectFunctionNArguments* args) {
-    const auto& sphere = static_cast<const SphereData*>(args->geometryUserPtr)[args->primID];
-    RTCRayN* const rays = RTCRayHitN_RayN(args->rayhit, args->N);
-    RTCHitN* const hits = RTCRayHitN_HitN(args->rayhit, args->N);
-    float nearest[kMaxPacket];
-    nearest_sphere_hits(sphere, reinterpret_cast<const float*>(rays), args->N, nearest);
-    for (unsigned i = 0; i < args->N; ++i) {
-        float& t_far = RTCRayN_tfar(rays, args->N, i);
-        if (args->valid[i] == 0 || !(nearest[i] < t_far)) continue;
-        t_far = nearest[i];
-        RTCHitN_geomID(hits, args->N, i) = args->geomID;
-        RTCHitN_primID(hits, args->N, i) = args->primID;
-    }
+void bounds_of(const ParallelogramShape& shape, RTCBounds& box) {
+    box.lower_x = shape.lower[0];
+    box.lower_y = shape.lower[1];
+    box.lower_z = shape.lower[2];
+    box.upper_x = shape.upper[0];
+    box.upper_y = shape.upper[1];
+    box.upper_z = shape.upper[2];
 }
 
-void occlude_sphere(const RTCOccludedFunctionNArguments* args) {
-    const auto& sphere = static_cast<const SphereData*>(args->geometryUserPtr)[args->primID];
-    float nearest[kMaxPacket];
-    nearest_sphere_hits(sphere, reinterpret_cast<const float*>(args->ray), args->N, nearest);
-    for (unsigned i = 0; i < args->N; ++i) {
-        float& t_far = RTCRayN_tfar(args->ray, args->N, i);
-        if (args->valid[i] == 0 || !(nearest[i] < t_far)) continue;
-        t_far = -std::numeric_limits<float>::infinity();
+/// The functions that Embree calls for shapes of ours.
+template <class Shape>
+struct Callbacks {
+    static const Shape& shape(void* shapes, unsigned number) {
+        return static_cast<const Shape*>(shapes)[number];
     }
-}
+
+    static void bounds(const RTCBoundsFunctionArguments* args) {
+        bounds_of(shape(args->geometryUserPtr, args->primID), *args->bounds_o);
+    }
+
+    static void intersect(const RTCIntersectFunctionNArguments* args) {
+        const unsigned n = args->N;
+        RTCRayN* const rays = RTCRayHitN_RayN(args->rayhit, n);
+        RTCHitN* const hits = RTCRayHitN_HitN(args->rayhit, n);
+        const RayRows rows{reinterpret_cast<float*>(rays), args->valid, n};
+        const HitRows hit_rows{&RTCHitN_primID(hits, n, 0), &RTCHitN_geomID(hits, n, 0),
+                               args->primID, args->geomID};
+        vecino::intersect(shape(args->geometryUserPtr, args->primID), rows, hit_rows);
+    }
+
+    static void occluded(const RTCOccludedFunctionNArguments* args) {
+        const RayRows rows{reinterpret_cast<float*>(args->ray), args->valid, args->N};
+        occlude(shape(args->geometryUserPtr, args->primID), rows);
+    }
+};
 
 struct ReleaseDevice {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -131,28 +91,55 @@ void attach(RTCScene scene, Geometry geometry, unsigned id) {
     rtcAttachGeometryByID(scene, geometry.get(), id);
 }
 
+template <class T>
+T* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
+    const std::size_t bytes = sizeof(T) * (format == RTC_FORMAT_UINT4 ? 4 : 3);
+    void* const buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, bytes, count);
+    if (buffer == nullptr) throw std::runtime_error("Embree: no memory");
+    return static_cast<T*>(buffer);
+}
+
+void number(std::uint32_t* indices, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) indices[i] = static_cast<std::uint32_t>(i);
+}
+
 void attach_triangles(RTCDevice device, RTCScene scene, const EmbreeGeometry& input) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
     const std::size_t corners = 3 * input.triangle_count;
-    void* const positions = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                                    RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners);
-    auto* const indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(std::uint32_t), input.triangle_count));
-    if (positions == nullptr || indices == nullptr) throw std::runtime_error("Embree: no memory");
+    auto* const positions =
+        new_buffer<float>(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, corners);
     std::memcpy(positions, input.triangle_corners, corners * 3 * sizeof(float));
-    for (std::size_t i = 0; i < corners; ++i) indices[i] = static_cast<std::uint32_t>(i);
+    number(new_buffer<std::uint32_t>(geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                                     input.triangle_count),
+           corners);
     attach(scene, std::move(geometry), kTriangles);
 }
 
-void attach_spheres(RTCDevice device, RTCScene scene, std::vector<SphereData>& spheres) {
+// Embree cuts a quad from its second corner to its fourth, a scene from the first to the third: the
+// corners start one later.
+void attach_quads(RTCDevice device, RTCScene scene, const EmbreeGeometry& input) {
+    Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD));
+    const std::size_t corners = 4 * input.quad_count;
+    auto* const positions =
+        new_buffer<float>(geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, corners);
+    for (std::size_t i = 0; i < corners; ++i)
+        std::memcpy(positions + 3 * i, &input.quads[i / 4][(i + 1) % 4], 3 * sizeof(float));
+    number(new_buffer<std::uint32_t>(geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT4,
+                                     input.quad_count),
+           corners);
+    attach(scene, std::move(geometry), kQuads);
+}
+
+/// Shapes of ours; they must outlive the scene.
+template <class Shape>
+void attach_shapes(RTCDevice device, RTCScene scene, std::vector<Shape>& shapes, unsigned id) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
-    rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(spheres.size()));
-    rtcSetGeometryUserData(geometry.get(), spheres.data());
-    rtcSetGeometryBoundsFunction(geometry.get(), sphere_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry.get(), intersect_sphere);
-    rtcSetGeometryOccludedFunction(geometry.get(), occlude_sphere);
-    attach(scene, std::move(geometry), kSpheres);
+    rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(shapes.size()));
+    rtcSetGeometryUserData(geometry.get(), shapes.data());
+    rtcSetGeometryBoundsFunction(geometry.get(), Callbacks<Shape>::bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry.get(), Callbacks<Shape>::intersect);
+    rtcSetGeometryOccludedFunction(geometry.get(), Callbacks<Shape>::occluded);
+    attach(scene, std::move(geometry), id);
 }
 
 // The packet calls of Embree by width, and the one difference between its versions 3 and 4.
@@ -195,29 +182,28 @@ VECINO_PACKET(4)
 VECINO_PACKET(8)
 VECINO_PACKET(16)
 
-template <int W, class Ray>
-void load_rays(const RayPacket<W>& rays, Ray& out) {
-    constexpr std::size_t kBytes = W * sizeof(float);
-    std::memcpy(out.org_x, rays.origin[0], kBytes);
-    std::memcpy(out.org_y, rays.origin[1], kBytes);
-    std::memcpy(out.org_z, rays.origin[2], kBytes);
-    std::memcpy(out.dir_x, rays.direction[0], kBytes);
-    std::memcpy(out.dir_y, rays.direction[1], kBytes);
-    std::memcpy(out.dir_z, rays.direction[2], kBytes);
-    std::memcpy(out.tfar, rays.t_far, kBytes);
-    std::memset(out.tnear, 0, kBytes);
-    std::memset(out.time, 0, kBytes);
-    std::memset(out.mask, 0xFF, kBytes);
-    std::memset(out.flags, 0, kBytes);
-}
+template <int W>
+constexpr bool kSameLayout =
+    offsetof(RayPacket<W>, origin) == offsetof(typename Packet<W>::Ray, org_x) &&
+    offsetof(RayPacket<W>, t_near) == offsetof(typename Packet<W>::Ray, tnear) &&
+    offsetof(RayPacket<W>, direction) == offsetof(typename Packet<W>::Ray, dir_x) &&
+    offsetof(RayPacket<W>, time) == offsetof(typename Packet<W>::Ray, time) &&
+    offsetof(RayPacket<W>, t_far) == offsetof(typename Packet<W>::Ray, tfar) &&
+    offsetof(RayPacket<W>, mask) == offsetof(typename Packet<W>::Ray, mask) &&
+    sizeof(RayPacket<W>) == sizeof(typename Packet<W>::Ray) &&
+    offsetof(HitPacket<W>, normal) == offsetof(typename Packet<W>::RayHit, hit.Ng_x) &&
+    offsetof(HitPacket<W>, u) == offsetof(typename Packet<W>::RayHit, hit.u) &&
+    offsetof(HitPacket<W>, primitive) == offsetof(typename Packet<W>::RayHit, hit.primID) &&
+    offsetof(HitPacket<W>, geometry) == offsetof(typename Packet<W>::RayHit, hit.geomID) &&
+    sizeof(HitPacket<W>) >= sizeof(typename Packet<W>::RayHit);
 
 }  // namespace
 
 struct EmbreeScene::Handles {
     Device device;
     Owned<RTCScene, ReleaseScene> scene;
-    std::vector<SphereData> spheres;
-    std::uint32_t triangle_count = 0;
+    std::vector<SphereShape> spheres;
+    std::vector<ParallelogramShape> parallelograms;
 };
 
 EmbreeScene::EmbreeScene(const EmbreeGeometry& geometry) : handles_(nullptr) {
@@ -226,12 +212,18 @@ EmbreeScene::EmbreeScene(const EmbreeGeometry& geometry) : handles_(nullptr) {
     if (!handles->device) throw std::runtime_error("Embree: no device");
     handles->scene.reset(rtcNewScene(handles->device.get()));
     if (geometry.watertight) rtcSetSceneFlags(handles->scene.get(), RTC_SCENE_FLAG_ROBUST);
-    handles->triangle_count = static_cast<std::uint32_t>(geometry.triangle_count);
-    const auto* const spheres = reinterpret_cast<const SphereData*>(geometry.spheres);
-    handles->spheres.assign(spheres, spheres + geometry.sphere_count);
+    RTCDevice const device = handles->device.get();
     RTCScene const scene = handles->scene.get();
-    if (geometry.triangle_count > 0) attach_triangles(handles->device.get(), scene, geometry);
-    if (geometry.sphere_count > 0) attach_spheres(handles->device.get(), scene, handles->spheres);
+    handles->spheres.assign(geometry.spheres, geometry.spheres + geometry.sphere_count);
+    if (geometry.quad_count > kMostParallelograms) {
+        attach_quads(device, scene, geometry);
+    } else if (geometry.quad_count > 0) {
+        for (std::size_t i = 0; i < geometry.quad_count; ++i)
+            handles->parallelograms.push_back(parallelogram_shape(geometry.quads[i]));
+        attach_shapes(device, scene, handles->parallelograms, kQuads);
+    }
+    if (geometry.triangle_count > 0) attach_triangles(device, scene, geometry);
+    if (geometry.sphere_count > 0) attach_shapes(device, scene, handles->spheres, kSpheres);
     rtcCommitScene(scene);
     const RTCError error = rtcGetDeviceError(handles->device.get());
     if (error != RTC_ERROR_NONE) {
@@ -245,37 +237,24 @@ EmbreeScene::~EmbreeScene() {
 }
 
 template <int W>
-void EmbreeScene::intersect(const RayPacket<W>& rays, HitPacket<W>& hits) const {
-    alignas(64) typename Packet<W>::RayHit packet;
-    load_rays(rays, packet.ray);
-    std::memset(packet.hit.geomID, 0xFF, sizeof packet.hit.geomID);
-    std::memset(packet.hit.instID, 0xFF, sizeof packet.hit.instID);
-    Packet<W>::intersect(rays.active, handles_->scene.get(), &packet);
-    std::memcpy(hits.t, packet.ray.tfar, sizeof hits.t);
-    std::memcpy(hits.u, packet.hit.u, sizeof hits.u);
-    std::memcpy(hits.v, packet.hit.v, sizeof hits.v);
-    for (int i = 0; i < W; ++i) {
-        const unsigned geometry = packet.hit.geomID[i];
-        const std::uint32_t base = geometry == kSpheres ? handles_->triangle_count : 0;
-        const bool miss = geometry == RTC_INVALID_GEOMETRY_ID || rays.active[i] == 0;
-        hits.primitive[i] = miss ? kNoPrimitive : packet.hit.primID[i] + base;
-    }
+void EmbreeScene::intersect(const std::int32_t (&active)[W], HitPacket<W>& hits) const {
+    static_assert(kSameLayout<W>);
+    Packet<W>::intersect(active, handles_->scene.get(),
+                         reinterpret_cast<typename Packet<W>::RayHit*>(&hits));
 }
 
 template <int W>
-void EmbreeScene::occluded(const RayPacket<W>& rays, std::int32_t* blocked) const {
-    alignas(64) typename Packet<W>::Ray packet;
-    load_rays(rays, packet);
-    Packet<W>::occluded(rays.active, handles_->scene.get(), &packet);
-    for (int i = 0; i < W; ++i) blocked[i] = packet.tfar[i] < 0.0f ? rays.active[i] : 0;
+void EmbreeScene::occluded(const std::int32_t (&active)[W], RayPacket<W>& rays) const {
+    Packet<W>::occluded(active, handles_->scene.get(),
+                        reinterpret_cast<typename Packet<W>::Ray*>(&rays));
 }
 
-template void EmbreeScene::intersect<4>(const RayPacket<4>&, HitPacket<4>&) const;
-template void EmbreeScene::intersect<8>(const RayPacket<8>&, HitPacket<8>&) const;
-template void EmbreeScene::intersect<16>(const RayPacket<16>&, HitPacket<16>&) const;
-template void EmbreeScene::occluded<4>(const RayPacket<4>&, std::int32_t*) const;
-template void EmbreeScene::occluded<8>(const RayPacket<8>&, std::int32_t*) const;
-template void EmbreeScene::occluded<16>(const RayPacket<16>&, std::int32_t*) const;
+#define VECINO_INSTANTIATE(W)                                                               \
+    template void EmbreeScene::intersect<W>(const std::int32_t(&)[W], HitPacket<W>&) const; \
+    template void EmbreeScene::occluded<W>(const std::int32_t(&)[W], RayPacket<W>&) const;
+VECINO_INSTANTIATE(4)
+VECINO_INSTANTIATE(8)
+VECINO_INSTANTIATE(16)
 
 const char* embree_version() {
     return RTC_VERSION_STRING;

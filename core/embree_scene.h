@@ -9,35 +9,35 @@
 
 namespace vecino {
 
-constexpr std::uint32_t kNoPrimitive = 0xFFFFFFFFu;
-
-/// Rays side by side. Directions are unit. Inactive lanes have active == 0, active ones -1.
+/// Rays side by side, laid out as Embree's own packets are, so that none is copied.
 template <int W>
 struct alignas(64) RayPacket {
     float origin[3][W];
-    float direction[3][W];
+    float t_near[W];
+    float direction[3][W];  ///< of any length but 0; t counts in lengths of it
+    float time[W];          ///< read by no geometry of ours
     float t_far[W];
-    std::int32_t active[W];
+    std::uint32_t mask[W];  ///< all ones
+    std::uint32_t unread[2][W];
 };
 
-/// Nearest hits. primitive: triangles count from 0, spheres go on from there; kNoPrimitive is a
-/// miss.
+/// Rays, and what they hit: geometry is an EmbreeKind, or kNoGeometry, which it must be before.
 template <int W>
 struct alignas(64) HitPacket {
-    float t[W];
+    RayPacket<W> ray;  ///< t_far: of the hit
+    float normal[3][W];
     float u[W], v[W];  ///< barycentric, triangles only
     std::uint32_t primitive[W];
+    std::uint32_t geometry[W];
+    std::uint32_t instance[4][W];  ///< room for what versions of Embree keep here
 };
 
-struct EmbreeGeometry {
-    const float* triangle_corners;  ///< 9 floats a triangle
-    std::size_t triangle_count;
-    const float* spheres;  ///< 4 floats a sphere: centre, radius
-    std::size_t sphere_count;
-    /// Costs about 40 % more time: no ray slips through an edge that triangles share. Without it
-    /// some 1 in 10^6 do on a fine closed mesh, none were seen on boxes made of quads.
-    bool watertight;
-};
+/// The kinds of geometry. Primitives of each are counted from 0.
+enum EmbreeKind : std::uint32_t { kQuads = 0, kTriangles = 1, kSpheres = 2 };
+
+constexpr std::uint32_t kNoGeometry = 0xFFFFFFFFu;
+
+struct EmbreeGeometry;  // embree_geometry.h
 
 class EmbreeScene {
   public:
@@ -47,14 +47,13 @@ class EmbreeScene {
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    /// Defined for W = 4, 8, 16.
+    /// Rays whose active is -1; those of 0 are left alone. Defined for W = 4, 8, 16.
     template <int W>
-    void intersect(const RayPacket<W>& rays, HitPacket<W>& hits) const;
+    void intersect(const std::int32_t (&active)[W], HitPacket<W>& hits) const;
 
-    /// Sets blocked[i] to -1 where something lies before t_far, 0 where not or where the lane is
-    /// inactive.
+    /// Sets t_far to -infinity where something lies before it.
     template <int W>
-    void occluded(const RayPacket<W>& rays, std::int32_t* blocked) const;
+    void occluded(const std::int32_t (&active)[W], RayPacket<W>& rays) const;
 
   private:
     struct Handles;

@@ -7,15 +7,17 @@
 #include <numbers>
 #include <optional>
 
+#include "core/embree_geometry.h"
+
 namespace vecino {
 namespace {
 
 // A hit is put back onto its surface, so it is off by a few units in the last place of the
 // coordinates; 2^-17 of the largest one is some 64 of them. Relative, so that the unit of length
 // does not matter.
-constexpr float kOffset = 0x1p-17f;
+constexpr float kOffsetShare = 0x1p-17f;
 
-void put(float (&to)[3], const glm::vec3& from) {
+void put(float* to, const glm::vec3& from) {
     to[0] = from.x;
     to[1] = from.y;
     to[2] = from.z;
@@ -29,6 +31,18 @@ bool is_perpendicular(glm::vec3 a, glm::vec3 b) {
     return std::abs(glm::dot(a, b)) <= 1e-6f * glm::length(a) * glm::length(b);
 }
 
+/// Unit. In double: that of a thin or tiny triangle keeps its digits.
+glm::dvec3 normal_of(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    return glm::normalize(glm::cross(b - a, c - a));
+}
+
+/// To the rounding of its coordinates.
+bool is_parallelogram(const Quad& quad) {
+    const auto& p = quad.corners_world;
+    const float reach = std::max({largest(p[0]), largest(p[1]), largest(p[2]), largest(p[3])});
+    return largest((p[0] + p[2]) - (p[1] + p[3])) <= 0x1p-21f * reach;
+}
+
 bool emits(const Material& material) {
     return material.emission != glm::vec3(0.0f);
 }
@@ -38,20 +52,30 @@ struct Triangle {
     std::array<glm::vec3, 3> normals{};  ///< zero: use the geometric one
 };
 
+struct Surface {
+    float fields[kSurfaceFields];
+    std::int32_t object_id;
+};
+
+/// Surfaces of one kind, and their shapes as Embree takes them.
+template <class Shape>
+struct Surfaces {
+    std::vector<Surface> list;
+    std::vector<Shape> shapes;
+};
+
 class Flattener {
   public:
     explicit Flattener(const Scene& scene) : scene_(scene) {}
 
     FlatScene run() {
         for (std::size_t i = 0; i < scene_.objects.size(); ++i) add_object(i);
-        flat_.triangle_count = static_cast<std::uint32_t>(flat_.surfaces.size());
-        flat_.surfaces.insert(flat_.surfaces.end(), spheres_.begin(), spheres_.end());
-        if (flat_.surfaces.empty()) flat_.surfaces.emplace_back();
         if (!has_normals_) flat_.vertex_normals.clear();
+        fill_table();
         set_selection_probabilities();
-        flat_.embree = std::make_unique<EmbreeScene>(
-            EmbreeGeometry{corners_.data(), flat_.triangle_count, sphere_shapes_.data(),
-                           spheres_.size(), has_mesh_});
+        flat_.embree = std::make_unique<EmbreeScene>(EmbreeGeometry{
+            quads_.shapes.data(), quads_.list.size(), triangles_.shapes.data(),
+            triangles_.list.size(), spheres_.shapes.data(), spheres_.list.size(), has_mesh_});
         return std::move(flat_);
     }
 
@@ -62,12 +86,39 @@ class Flattener {
         std::visit([this](const auto& shape) { add(shape); }, scene_.objects[index].shape);
     }
 
+    // Columns in the order of EmbreeKind.
+    void fill_table() {
+        constexpr std::size_t kPadding = 32;
+        const std::vector<Surface>* const kinds[] = {&quads_.list, &triangles_.list,
+                                                     &spheres_.list};
+        std::size_t count = 0;
+        for (const auto* kind : kinds) count += kind->size();
+        const std::size_t stride = (count + kPadding) / kPadding * kPadding;
+        flat_.first_triangle = static_cast<std::uint32_t>(quads_.list.size());
+        flat_.first_sphere = static_cast<std::uint32_t>(count - spheres_.list.size());
+        flat_.surface_stride = static_cast<std::uint32_t>(stride);
+        flat_.surface_fields.assign(stride * kSurfaceFields, 0.0f);
+        for (const auto* kind : kinds) {
+            for (const Surface& surface : *kind) {
+                const std::size_t column = flat_.object_id.size();
+                flat_.object_id.push_back(surface.object_id);
+                for (std::size_t k = 0; k < kSurfaceFields; ++k)
+                    flat_.surface_fields[k * stride + column] = surface.fields[k];
+            }
+        }
+    }
+
     void add(const Quad& quad) {
         const auto& p = quad.corners_world;
-        add_triangle({{p[0], p[1], p[2]}});
-        add_triangle({{p[0], p[2], p[3]}});
+        if (is_parallelogram(quad)) {
+            quads_.list.push_back(flat_surface({p[0], p[1], p[2]}, largest(p[3])));
+            quads_.shapes.push_back(p);
+        } else {
+            add_triangle({{p[0], p[1], p[2]}});
+            add_triangle({{p[0], p[2], p[3]}});
+        }
         if (!emits(*material_)) return;
-        if (p[0] + p[2] == p[1] + p[3]) {
+        if (is_parallelogram(quad)) {
             const bool is_rectangle = is_perpendicular(p[1] - p[0], p[3] - p[0]);
             add_flat_light(is_rectangle ? LightKind::rectangle : LightKind::parallelogram,
                            {p[0], p[1], p[3]});
@@ -92,41 +143,41 @@ class Flattener {
     }
 
     void add(const Sphere& sphere) {
-        SurfaceRecord record = new_surface();
-        record.shape[0] = sphere.center_world.x;
-        record.shape[1] = sphere.center_world.y;
-        record.shape[2] = sphere.center_world.z;
-        record.shape[3] = sphere.radius;
-        record.offset_world = kOffset * (largest(sphere.center_world) + sphere.radius);
-        spheres_.push_back(record);
-        sphere_shapes_.insert(sphere_shapes_.end(), record.shape, record.shape + 4);
+        Surface surface = new_surface();
+        put(surface.fields + kShape, sphere.center_world);
+        surface.fields[kShape + 3] = sphere.radius;
+        surface.fields[kOffset] = kOffsetShare * (largest(sphere.center_world) + sphere.radius);
+        spheres_.list.push_back(surface);
+        const glm::vec3& c = sphere.center_world;
+        spheres_.shapes.push_back({{c.x, c.y, c.z}, sphere.radius});
         if (!emits(*material_)) return;
         LightRecord light = new_light(LightKind::sphere);
         put(light.origin, sphere.center_world);
         light.radius = sphere.radius;
         light.area = 4.0f * std::numbers::pi_v<float> * sphere.radius * sphere.radius;
-        light.offset_world = record.offset_world;
+        light.offset_world = surface.fields[kOffset];
         flat_.lights.push_back(light);
     }
 
     void add_triangle(const Triangle& triangle) {
-        const auto& [a, b, c] = triangle.corners;
-        // In double: the normal of a thin or tiny triangle keeps its digits.
-        const glm::dvec3 normal = glm::normalize(
-            glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)));
-        SurfaceRecord record = new_surface();
-        record.shape[0] = static_cast<float>(normal.x);
-        record.shape[1] = static_cast<float>(normal.y);
-        record.shape[2] = static_cast<float>(normal.z);
-        record.shape[3] = static_cast<float>(glm::dot(normal, glm::dvec3(a)));
-        record.offset_world = kOffset * std::max({largest(a), largest(b), largest(c)});
-        flat_.surfaces.push_back(record);
-        for (const glm::vec3& corner : triangle.corners) {
-            corners_.insert(corners_.end(), {corner.x, corner.y, corner.z});
-        }
+        triangles_.list.push_back(flat_surface(triangle.corners, 0.0f));
+        for (const glm::vec3& c : triangle.corners)
+            triangles_.shapes.insert(triangles_.shapes.end(), {c.x, c.y, c.z});
         VertexNormals normals;
         for (std::size_t k = 0; k < 3; ++k) put(normals.corner[k], triangle.normals[k]);
         flat_.vertex_normals.push_back(normals);
+    }
+
+    /// Through three corners; any others' coordinates are at most `others`.
+    [[nodiscard]] Surface flat_surface(const std::array<glm::vec3, 3>& corners,
+                                       float others) const {
+        const glm::dvec3 normal = normal_of(corners[0], corners[1], corners[2]);
+        Surface surface = new_surface();
+        put(surface.fields + kShape, normal);
+        surface.fields[kShape + 3] = static_cast<float>(glm::dot(normal, glm::dvec3(corners[0])));
+        for (const glm::vec3& corner : corners) others = std::max(others, largest(corner));
+        surface.fields[kOffset] = kOffsetShare * others;
+        return surface;
     }
 
     void add_flat_light(LightKind kind, const std::array<glm::vec3, 3>& corners) {
@@ -140,16 +191,21 @@ class Flattener {
         put(light.normal, glm::normalize(cross));
         const double share = kind == LightKind::triangle ? 0.5 : 1.0;
         light.area = static_cast<float>(share * glm::length(cross));
-        light.offset_world = flat_.surfaces.back().offset_world;
+        float reach = 0;
+        for (const glm::vec3& corner : corners) reach = std::max(reach, largest(corner));
+        light.offset_world =
+            kOffsetShare * std::max(reach, largest(corners[1] + corners[2] - corners[0]));
+        light.inverse_length[0] = static_cast<float>(1.0 / glm::length(edge1));
+        light.inverse_length[1] = static_cast<float>(1.0 / glm::length(edge2));
         flat_.lights.push_back(light);
     }
 
-    [[nodiscard]] SurfaceRecord new_surface() const {
-        SurfaceRecord record{};
-        put(record.albedo, material_->albedo);
-        put(record.emission, material_->emission);
-        record.object_id = object_id_;
-        return record;
+    [[nodiscard]] Surface new_surface() const {
+        Surface surface{};
+        put(surface.fields + kAlbedo, material_->albedo);
+        put(surface.fields + kEmission, material_->emission);
+        surface.object_id = object_id_;
+        return surface;
     }
 
     [[nodiscard]] LightRecord new_light(LightKind kind) const {
@@ -179,9 +235,9 @@ class Flattener {
 
     const Scene& scene_;
     FlatScene flat_;
-    std::vector<SurfaceRecord> spheres_;
-    std::vector<float> sphere_shapes_;
-    std::vector<float> corners_;
+    Surfaces<std::array<glm::vec3, 4>> quads_;
+    Surfaces<float> triangles_;
+    Surfaces<SphereShape> spheres_;
     bool has_mesh_ = false;
     bool has_normals_ = false;
     std::int32_t object_id_ = 0;
@@ -209,11 +265,15 @@ FlatScene flatten(const Scene& scene) {
 TraceTask trace_task(const Scene& scene, const FlatScene& flat, float aspect) {
     TraceTask task{};
     task.embree = flat.embree.get();
-    task.surfaces = flat.surfaces.data();
+    task.surfaces = {flat.surface_fields.data(), flat.surface_stride,
+                     static_cast<std::uint32_t>(flat.object_id.size()), flat.object_id.data()};
+    task.first_triangle = flat.first_triangle;
+    task.first_sphere = flat.first_sphere;
+    task.has_triangles = flat.first_sphere > flat.first_triangle;
+    task.has_spheres = task.surfaces.count > flat.first_sphere;
     task.vertex_normals = flat.vertex_normals.empty() ? nullptr : flat.vertex_normals.data();
     task.lights = flat.lights.data();
     task.light_count = static_cast<std::uint32_t>(flat.lights.size());
-    task.triangle_count = flat.triangle_count;
     put(task.background, scene.background);
     task.has_background = scene.background != glm::vec3(0.0f);
     set_camera(scene.camera, aspect, task);

@@ -13,11 +13,13 @@
 namespace vecino {
 
 struct FlatScene {
-    std::vector<SurfaceRecord> surfaces;  ///< triangles, then spheres; never empty
-    std::vector<VertexNormals>
-        vertex_normals;  ///< one per triangle; empty when no mesh has normals
+    std::vector<float> surface_fields;  ///< SurfaceTable::fields
+    std::vector<std::int32_t> object_id;
+    std::uint32_t surface_stride = 0;
+    std::uint32_t first_triangle = 0;
+    std::uint32_t first_sphere = 0;
+    std::vector<VertexNormals> vertex_normals;  ///< one per triangle; empty: no mesh has normals
     std::vector<LightRecord> lights;
-    std::uint32_t triangle_count = 0;
     std::unique_ptr<EmbreeScene> embree;
 };
 

@@ -12,6 +12,7 @@ namespace vecino {
 namespace {
 
 constexpr int W = VECINO_WIDTH;
+constexpr float kPi = 3.14159265358979f;
 
 using Float = float __attribute__((vector_size(4 * W)));
 using Int = std::int32_t __attribute__((vector_size(4 * W)));
@@ -43,7 +44,30 @@ inline void store(void* to, V v) {
     __builtin_memcpy(to, &v, sizeof v);
 }
 
+inline Float gather(const float* table, Int index) {
+    alignas(4 * W) float lanes[W];
+#pragma omp simd
+    for (int i = 0; i < W; ++i) lanes[i] = table[index[i]];
+    return load<Float>(lanes);
+}
+
+/// table[index] per lane. Of a table of `count` entries, padded to 32 or more; small ones are
+/// looked up in registers, which is many times faster than from memory.
+inline Float lookup(const float* table, std::uint32_t count, Int index) {
+#if !defined(__clang__)  // which has no shuffle by a variable
+    if constexpr (W >= 8) {
+        if (count <= W) return __builtin_shuffle(load<Float>(table), index);
+        if (count <= 2 * W)
+            return __builtin_shuffle(load<Float>(table), load<Float>(table + W), index);
+    }
+#endif
+    return gather(table, index);
+}
+
 inline Float select(Mask mask, Float a, Float b) {
+    return mask ? a : b;
+}
+inline Int select(Mask mask, Int a, Int b) {
     return mask ? a : b;
 }
 inline Float3 select(Mask m, Float3 a, Float3 b) {
@@ -91,6 +115,9 @@ inline Float3 operator+(Float3 a, Float3 b) {
 inline Float3 operator-(Float3 a, Float3 b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+inline Float3 operator-(Float3 a) {
+    return {-a.x, -a.y, -a.z};
+}
 inline Float3 operator*(Float3 a, Float3 b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
@@ -105,6 +132,23 @@ inline Float3 cross(Float3 a, Float3 b) {
 }
 inline Float3 normalise(Float3 v) {
     return v * (1.0f / sqrt(dot(v, v)));
+}
+
+/// The angle of (x, y) for y >= 0, in [0, pi]; error below 3e-7. Chebyshev interpolation of atan(t)
+/// / t in t^2.
+inline Float angle_of(Float y, Float x) {
+    const Float run = abs(x);
+    const Mask steep = y > run;
+    const Float t = select(steep, run, y) / max(select(steep, y, run), splat(1e-30f));
+    const Float z = t * t;
+    constexpr float kTerms[] = {9.9999988200e-01f,  -3.3331812656e-01f, 1.9966961830e-01f,
+                                -1.4003290185e-01f, 9.8688654579e-02f,  -5.8829753141e-02f,
+                                2.3780518597e-02f,  -4.5597919861e-03f};
+    Float sum = splat(kTerms[7]);
+    for (int i = 6; i >= 0; --i) sum = sum * z + kTerms[i];
+    const Float flat = sum * t;
+    const Float angle = select(steep, 0.5f * kPi - flat, flat);
+    return select(x < 0.0f, kPi - angle, angle);
 }
 
 /// sin and cos of 2 pi u for u in [0, 1): minimax polynomials on [-pi/4, pi/4], error below 1e-7.

@@ -4,6 +4,8 @@
 // by side. Included only by trace_kernel.cpp, like lanes.h.
 #pragma once
 
+#include <cstddef>
+
 #include "core/lanes.h"
 #include "core/random_lanes.h"
 #include "core/rectangle_lanes.h"
@@ -26,12 +28,37 @@ inline Basis basis_around(Float3 n) {
 /// Emitters picked for W shading points.
 struct PickedLight {
     Float3 origin, edge1, edge2, normal, radiance;
-    Float area, radius, offset, probability;
+    Float area, radius, offset, inverse_length1, inverse_length2, probability;
     Mask sphere, triangle, rectangle;
     Float u;  ///< the random number, stretched to [0, 1) again
 };
 
-inline std::uint32_t pick_index(const TraceTask& task, float u) {
+/// A picked light from a reader of the fields of LightRecord: by offset, in floats.
+template <class Read>
+inline PickedLight read_light(const Read& read) {
+    const auto number = [&](std::size_t bytes) { return read(bytes / sizeof(float)); };
+    const auto vector = [&](std::size_t bytes) {
+        return Float3{number(bytes), number(bytes + 4), number(bytes + 8)};
+    };
+    PickedLight light;
+    light.origin = vector(offsetof(LightRecord, origin));
+    light.edge1 = vector(offsetof(LightRecord, edge1));
+    light.edge2 = vector(offsetof(LightRecord, edge2));
+    light.normal = vector(offsetof(LightRecord, normal));
+    light.radiance = vector(offsetof(LightRecord, radiance));
+    light.area = number(offsetof(LightRecord, area));
+    light.radius = number(offsetof(LightRecord, radius));
+    light.offset = number(offsetof(LightRecord, offset_world));
+    light.inverse_length1 = number(offsetof(LightRecord, inverse_length));
+    light.inverse_length2 = number(offsetof(LightRecord, inverse_length) + 4);
+    const Int kind = (Int)number(offsetof(LightRecord, kind));
+    light.sphere = kind == static_cast<int>(LightKind::sphere);
+    light.triangle = kind == static_cast<int>(LightKind::triangle);
+    light.rectangle = kind == static_cast<int>(LightKind::rectangle);
+    return light;
+}
+
+inline std::int32_t pick_index(const TraceTask& task, float u) {
     std::uint32_t low = 0;
     std::uint32_t high = task.light_count - 1;
     while (low < high) {
@@ -42,45 +69,27 @@ inline std::uint32_t pick_index(const TraceTask& task, float u) {
             low = middle + 1;
         }
     }
-    return low;
+    return static_cast<std::int32_t>(low);
 }
 
 inline PickedLight pick_light(const TraceTask& task, Float u) {
-    constexpr int kFields = 19;  // origin to selection_probability
-    alignas(64) float gathered[kFields][W];
-    alignas(64) std::int32_t sphere[W];
-    alignas(64) std::int32_t triangle[W];
-    alignas(64) std::int32_t rectangle[W];
-    alignas(64) float stretched[W];
-    for (int i = 0; i < W; ++i) {
-        const LightRecord& light = task.lights[task.light_count > 1 ? pick_index(task, u[i]) : 0];
-        float fields[kFields];
-        __builtin_memcpy(fields, &light.origin, sizeof fields);
-        for (int k = 0; k < kFields; ++k) gathered[k][i] = fields[k];
-        sphere[i] = light.kind == LightKind::sphere ? -1 : 0;
-        triangle[i] = light.kind == LightKind::triangle ? -1 : 0;
-        rectangle[i] = light.kind == LightKind::rectangle ? -1 : 0;
-        const float p = light.selection_probability;
-        const float inside = (u[i] - (light.selection_cdf - p)) / p;
-        stretched[i] = inside < 0.0f ? 0.0f : inside > 0.99999994f ? 0.99999994f : inside;
+    const auto* const fields = reinterpret_cast<const float*>(task.lights);
+    if (task.light_count == 1) {
+        PickedLight light = read_light([&](std::size_t place) { return splat(fields[place]); });
+        light.probability = splat(1.0f);
+        light.u = u;
+        return light;
     }
-    const auto vector = [&](int k) {
-        return Float3{load<Float>(gathered[k]), load<Float>(gathered[k + 1]),
-                      load<Float>(gathered[k + 2])};
-    };
-    return {vector(0),
-            vector(3),
-            vector(6),
-            vector(9),
-            vector(12),
-            load<Float>(gathered[15]),
-            load<Float>(gathered[16]),
-            load<Float>(gathered[17]),
-            load<Float>(gathered[18]),
-            load<Mask>(sphere),
-            load<Mask>(triangle),
-            load<Mask>(rectangle),
-            load<Float>(stretched)};
+    Int index;
+    for (int i = 0; i < W; ++i) index[i] = pick_index(task, u[i]);
+    const Int base = index * static_cast<int>(sizeof(LightRecord) / sizeof(float));
+    PickedLight light = read_light([&](std::size_t place) { return gather(fields + place, base); });
+    light.probability =
+        gather(fields + offsetof(LightRecord, selection_probability) / sizeof(float), base);
+    const Float sum = gather(fields + offsetof(LightRecord, selection_cdf) / sizeof(float), base);
+    const Float inside = (u - (sum - light.probability)) / light.probability;
+    light.u = min(max(inside, splat(0.0f)), splat(0.99999994f));
+    return light;
 }
 
 /// A point on an emitter as seen from a shading point.

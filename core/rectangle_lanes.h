@@ -11,119 +11,110 @@
 namespace vecino {
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
-
-/// arcsine for |x| <= 1 (Cephes), error below 2e-7. Our own, as sincos_turns is.
-inline Float arcsine(Float x) {
-    const Float magnitude = min(abs(x), splat(1.0f));
-    const Mask steep = magnitude > 0.5f;
-    const Float z = select(steep, 0.5f * (1.0f - magnitude), magnitude * magnitude);
-    const Float root = select(steep, sqrt(z), magnitude);
-    const Float tail = ((((4.2163199048e-2f * z + 2.4181311049e-2f) * z + 4.5470025998e-2f) * z +
-                         7.4953002686e-2f) *
-                            z +
-                        1.6666752422e-1f) *
-                       z;
-    const Float small = root + root * tail;
-    return copysign(select(steep, 0.5f * kPi - 2.0f * small, small), x);
-}
-
-/// A rectangle in a frame whose origin is the shading point: x0..x1 by y0..y1 at height z (below
-/// 0), and what is needed to sample it (Urena, Fajardo, King 2013).
-struct SphericalRectangle {
-    Float3 x_axis, y_axis, z_axis;
-    Float x0, x1, y0, y1, z;
-    Float b0, b1, k;
-    Float solid_angle;
+/// A rectangle in a frame around the shading point: the points (x, y, height) with x in x0..x1, y
+/// in y0..y1.
+struct RectangleView {
+    Float3 x_axis, y_axis;  ///< unit, along the edges
+    Float3 z_axis;          ///< unit, to the rectangle's plane: against its normal
+    Float x0, x1, y0, y1;
+    Float height;  ///< > 0 where its emitting side is in sight
+    // One over the distance of the lines through its sides.
+    Float per_x0, per_x1, per_y0, per_y1;
 };
 
 inline Float inverse_length(Float a, Float b) {
     return 1.0f / sqrt(a * a + b * b);
 }
 
-/// From a shading point to the corner `to_corner`; edges are perpendicular.
-inline SphericalRectangle spherical_rectangle(Float3 to_corner, Float3 edge1, Float3 edge2) {
-    SphericalRectangle r;
-    const Float length1 = sqrt(dot(edge1, edge1));
-    const Float length2 = sqrt(dot(edge2, edge2));
-    r.x_axis = edge1 * (1.0f / length1);
-    r.y_axis = edge2 * (1.0f / length2);
-    const Float3 normal = cross(r.x_axis, r.y_axis);
-    const Float height = dot(to_corner, normal);
-    const Float3 zero{};
-    r.z_axis = select(height > 0.0f, zero - normal, normal);
-    r.z = -abs(height);
-    r.x0 = dot(to_corner, r.x_axis);
-    r.y0 = dot(to_corner, r.y_axis);
-    r.x1 = r.x0 + length1;
-    r.y1 = r.y0 + length2;
-    // Normals of the planes through the shading point and each side, of which two parts matter.
-    const Float side_y0 = inverse_length(r.z, r.y0);
-    const Float side_x1 = inverse_length(r.z, r.x1);
-    const Float side_y1 = inverse_length(r.z, r.y1);
-    const Float side_x0 = inverse_length(r.z, r.x0);
-    const Float a2 = arcsine(-r.x0 * r.y1 * side_x0 * side_y1);
-    const Float a3 = arcsine(r.x0 * r.y0 * side_x0 * side_y0);
-    r.solid_angle = arcsine(-r.x1 * r.y0 * side_x1 * side_y0) +
-                    arcsine(r.x1 * r.y1 * side_x1 * side_y1) + a2 + a3;
-    r.b0 = -r.y0 * side_y0;
-    r.b1 = r.y1 * side_y1;
-    r.k = kPi - a2 - a3;
+/// A rectangle by a corner, relative to the shading point, its edges and what is known of them.
+struct RectangleShape {
+    Float3 to_corner, edge1, edge2, normal;
+    Float inverse_length1, inverse_length2;
+};
+
+inline RectangleView view_rectangle(const RectangleShape& shape) {
+    RectangleView r;
+    r.x_axis = shape.edge1 * shape.inverse_length1;
+    r.y_axis = shape.edge2 * shape.inverse_length2;
+    r.z_axis = -shape.normal;
+    r.height = dot(shape.to_corner, r.z_axis);
+    r.x0 = dot(shape.to_corner, r.x_axis);
+    r.y0 = dot(shape.to_corner, r.y_axis);
+    r.x1 = r.x0 + dot(shape.edge1, r.x_axis);
+    r.y1 = r.y0 + dot(shape.edge2, r.y_axis);
+    r.per_x0 = inverse_length(r.height, r.x0);
+    r.per_x1 = inverse_length(r.height, r.x1);
+    r.per_y0 = inverse_length(r.height, r.y0);
+    r.per_y1 = inverse_length(r.height, r.y1);
     return r;
 }
 
-/// A point of the rectangle, relative to the shading point.
-inline Float3 sample_rectangle(const SphericalRectangle& r, Pair u) {
+/// Points of a rectangle that are uniform over its solid angle.
+struct SolidAngleSample {
+    Float3 to_point;    ///< from the shading point
+    Float solid_angle;  ///< steradians
+};
+
+/// arcsine(x y / (sqrt(x^2 + h^2) sqrt(y^2 + h^2))), which near 1 would lose half of its digits.
+inline Float corner_angle(const RectangleView& r, Float x, Float y) {
+    const Float product = x * y;
+    const Float distance = sqrt(x * x + y * y + r.height * r.height);
+    return copysign(angle_of(abs(product), abs(r.height) * distance), product);
+}
+
+/// Urena, Fajardo, King: An Area-Preserving Parametrization for Spherical Rectangles (EGSR 2013),
+/// in a frame whose z is the other way.
+inline SolidAngleSample sample_solid_angle(const RectangleView& r, Pair u) {
+    const Float a2 = -corner_angle(r, r.x0, r.y1);
+    const Float a3 = corner_angle(r, r.x0, r.y0);
+    SolidAngleSample sample;
+    sample.solid_angle = corner_angle(r, r.x1, r.y1) - corner_angle(r, r.x1, r.y0) + a2 + a3;
+    const Float b0 = -r.y0 * r.per_y0;
+    const Float b1 = r.y1 * r.per_y1;
+    const Float angle = u.u * sample.solid_angle + (kPi - a2 - a3);
     Float sine, cosine;
-    const Float angle = u.u * r.solid_angle + r.k;
     sincos_turns(max(angle, splat(0.0f)) * (0.5f / kPi), sine, cosine);
     sine = select(abs(sine) > 1e-12f, sine, splat(1e-12f));
-    const Float fu = (cosine * r.b0 - r.b1) / sine;
-    const Float cu = copysign(1.0f, fu) * inverse_length(fu, r.b0);
+    const Float fu = (cosine * b0 - b1) / sine;
+    const Float cu = copysign(1.0f, fu) * inverse_length(fu, b0);
     const Float sin_u = sqrt(max(1.0f - cu * cu, splat(1e-12f)));
-    const Float x = min(max(-(cu * r.z) / sin_u, r.x0), r.x1);
-    const Float d2 = x * x + r.z * r.z;
+    const Float x = min(max(cu * r.height / sin_u, r.x0), r.x1);
+    const Float d2 = x * x + r.height * r.height;
     const Float h0 = r.y0 / sqrt(d2 + r.y0 * r.y0);
     const Float h1 = r.y1 / sqrt(d2 + r.y1 * r.y1);
     const Float h = h0 + u.v * (h1 - h0);
-    const Float y = h * sqrt(d2 / max(1.0f - h * h, splat(1e-12f)));
-    return r.x_axis * x + r.y_axis * min(max(y, r.y0), r.y1) + r.z_axis * r.z;
+    const Float y = min(max(h * sqrt(d2 / max(1.0f - h * h, splat(1e-12f))), r.y0), r.y1);
+    sample.to_point = r.x_axis * x + r.y_axis * y + r.z_axis * r.height;
+    return sample;
 }
 
-/// acos(c) / sqrt(1 - c^2) for c in [0, 1], error 2e-7: interpolated at Chebyshev's points.
-inline Float angle_over_sine(Float c) {
-    constexpr float kTerms[] = {1.5707963235e+00f,  -9.9999920579e-01f, 7.8536576713e-01f,
-                                -6.6614234455e-01f, 5.8460294511e-01f,  -5.1069299354e-01f,
-                                4.1580703975e-01f,  -2.8580595955e-01f, 1.4669184033e-01f,
-                                -4.7913828375e-02f, 7.2904176269e-03f};
-    Float sum = splat(kTerms[10]);
-    for (int i = 9; i >= 0; --i) sum = sum * c + kTerms[i];
-    return sum;
-}
-
-/// Irradiance over pi of a rectangle of radiance 1 that nothing hides (Lambert's formula), where it
-/// is exact: all corners above the horizon of n, and less than a right angle apart.
+/// Irradiance over pi of a rectangle of radiance 1 that nothing hides, where it is exact: all of it
+/// above the horizon.
 struct Irradiance {
     Float value;
     Mask exact;
 };
 
-inline Irradiance rectangle_irradiance(const SphericalRectangle& r, Float3 n) {
-    const auto corner = [&](Float x, Float y) {
-        return normalise(r.x_axis * x + r.y_axis * y + r.z_axis * r.z);
+/// Lambert's formula: half the sum, over the sides, of the angle that a side fills times the cosine
+/// between the surface's normal and that of the plane through the side.
+inline Irradiance rectangle_irradiance(const RectangleView& r, Float3 normal) {
+    const Float nx = dot(normal, r.x_axis);
+    const Float ny = dot(normal, r.y_axis);
+    const Float nz = dot(normal, r.z_axis);
+    const Float h = nz * r.height;
+    const Float lowest = h + min(nx * r.x0, nx * r.x1) + min(ny * r.y0, ny * r.y1);
+    const auto side = [](Float from, Float to, Float per) {
+        const Float a = from * per;
+        const Float b = to * per;
+        return angle_of(b - a, 1.0f + a * b) * per;
     };
-    const Float3 corners[] = {corner(r.x0, r.y0), corner(r.x1, r.y0), corner(r.x1, r.y1),
-                              corner(r.x0, r.y1)};
-    Irradiance e{Float{}, Mask{} - 1};
-    for (int i = 0; i < 4; ++i) {
-        const Float3 a = corners[i];
-        const Float3 b = corners[(i + 1) % 4];
-        const Float c = dot(a, b);
-        e.exact &= (c > 0.0f) & (dot(n, a) > 0.0f);
-        e.value += angle_over_sine(min(max(c, splat(0.0f)), splat(1.0f))) * dot(n, cross(a, b));
-    }
-    e.value = abs(e.value) * (0.5f / kPi);
-    return e;
+    const Float flat = ny * r.height;
+    const Float deep = nx * r.height;
+    const Float sum = side(r.x0, r.x1, r.per_y0) * (flat - nz * r.y0) +
+                      side(r.x0, r.x1, r.per_y1) * (nz * r.y1 - flat) +
+                      side(r.y0, r.y1, r.per_x0) * (deep - nz * r.x0) +
+                      side(r.y0, r.y1, r.per_x1) * (nz * r.x1 - deep);
+    return {max(sum, splat(0.0f)) * (0.5f / kPi), lowest > 0.0f};
 }
 
 }  // namespace

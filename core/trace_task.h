@@ -12,22 +12,28 @@ namespace vecino {
 
 class EmbreeScene;
 
-/// A triangle or a sphere, as shading sees it. One cache line. Triangles come first, then spheres.
-struct alignas(64) SurfaceRecord {
-    float shape[4];  ///< triangle: unit normal n and dot(n, p0); sphere: centre and radius
-    float albedo[3];
-    float offset_world;  ///< distance by which rays leave the surface, so that they do not hit it
-                         ///< again
-    float emission[3];   ///< radiance
-    std::int32_t object_id;
-    std::int32_t padding[4];
+/// What shading knows of a surface: a planar quad, a triangle or a sphere.
+enum SurfaceField {
+    kShape = 0,     ///< flat: unit normal n and dot(n, p0); sphere: centre and radius
+    kAlbedo = 4,    ///< 3 numbers
+    kOffset = 7,    ///< by which rays leave the surface, so that they do not hit it again
+    kEmission = 8,  ///< 3 numbers: radiance
+    kSurfaceFields = 11
+};
+
+/// A table with a row per field and a column per surface: quads, triangles, spheres. Rows are
+/// padded, so that the first 32 columns can always be read.
+struct SurfaceTable {
+    const float* fields;
+    std::uint32_t stride;
+    std::uint32_t count;
+    const std::int32_t* object_id;  ///< by surface
 };
 
 enum class LightKind : std::int32_t { parallelogram, rectangle, triangle, sphere };
 
-/// An emitter, as next-event estimation sees it.
+/// An emitter, as next-event estimation sees it. Numbers only: kernels gather them by their places.
 struct LightRecord {
-    LightKind kind;
     float origin[3];  ///< a corner, or the sphere's centre
     float edge1[3];
     float edge2[3];
@@ -36,6 +42,8 @@ struct LightRecord {
     float area;
     float radius;
     float offset_world;
+    float inverse_length[2];  ///< of the edges
+    LightKind kind;
     float selection_probability;
     float selection_cdf;  ///< sum of the probabilities up to and including this light
 };
@@ -47,11 +55,12 @@ struct VertexNormals {
 
 struct TraceTask {
     const EmbreeScene* embree;
-    const SurfaceRecord* surfaces;
+    SurfaceTable surfaces;
     const VertexNormals* vertex_normals;  ///< one per triangle, or null when no mesh has normals
     const LightRecord* lights;
     std::uint32_t light_count;
-    std::uint32_t triangle_count;
+    std::uint32_t first_triangle, first_sphere;  ///< of the surfaces
+    bool has_triangles, has_spheres;
 
     float background[3];
     bool has_background;
