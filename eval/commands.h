@@ -8,6 +8,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "core/error.h"
 
@@ -25,6 +26,9 @@ void add_run_command(CLI::App& app, Action& chosen);
 void add_report_command(CLI::App& app, Action& chosen);
 void add_list_command(CLI::App& app, Action& chosen);
 void add_schema_command(CLI::App& app, Action& chosen);
+
+/// The commit that the program was built from: made by commit.cmake; empty where it is unknown.
+extern const std::string_view kCommit;
 
 /// What --version prints: this program, its libraries, packet width and threads.
 std::string version_text();

@@ -18,11 +18,16 @@ namespace {
 constexpr double kRender_s = 0.3;
 constexpr int kRounds = 5;
 
-/// What the answer depends on: all but the answer itself and the seed.
+/// What the answer depends on: all but the answer itself, the seed, and how neighbours are weighed,
+/// which takes no time beside tracing. Cells that differ in that alone share their answer, and with
+/// it their frames.
 nlohmann::json question(const Cell& cell) {
     nlohmann::json json = cell.parameters_json();
     json.erase("spp");
     json.erase("seed");
+    for (const SchemeOption& row : scheme_options()) {
+        if (row.name != "window") json.erase(std::string(row.name));
+    }
     return json;
 }
 
@@ -94,6 +99,15 @@ std::optional<int> EqualTimeBudgets::spp(const Cell& cell, const std::string& st
         found ? entries_[cell.group].value("state", nlohmann::json()) : nlohmann::json();
     if (stored != state) return std::nullopt;
     return found;
+}
+
+std::optional<int> EqualTimeBudgets::spp_like(const Cell& cell, const std::string& state) const {
+    Cell like = cell;
+    for (const auto& [group, entry] : entries_.items()) {
+        like.group = group;
+        if (const auto found = spp(like, state)) return found;
+    }
+    return std::nullopt;
 }
 
 void EqualTimeBudgets::put(const Cell& cell, const std::string& state, int spp) {

@@ -23,6 +23,9 @@ class EqualTimeBudgets {
     [[nodiscard]] std::optional<int> spp(const Cell& cell) const;
     /// The same, measured in this state of program and scene file too.
     [[nodiscard]] std::optional<int> spp(const Cell& cell, const std::string& state) const;
+    /// Of any group for which the same was measured in this state: of one that differs in its
+    /// weights alone.
+    [[nodiscard]] std::optional<int> spp_like(const Cell& cell, const std::string& state) const;
     /// Keeps it, in the file.
     void put(const Cell& cell, const std::string& state, int spp);
 

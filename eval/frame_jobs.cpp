@@ -8,9 +8,12 @@
 namespace vecino {
 namespace {
 
-/// Ceilings of one reference stand together: it is all that is traced for them.
+/// Ceilings of one reference stand together: it is all that is traced for them. A measured budget
+/// shares no frame with another, whatever stands for it until it is measured: estimates count both.
 std::string job_key(const Cell& cell) {
-    if (cell.kind != CellKind::blocky_ceiling) return frame_json(cell.scene, cell.settings).dump();
+    const std::string measured = cell.budget == Budget::equal_time ? " measured" : "";
+    if (cell.kind != CellKind::blocky_ceiling)
+        return frame_json(cell.scene, cell.settings).dump() + measured;
     nlohmann::json key = cell.parameters_json();
     key.erase("reduction");
     return key.dump();

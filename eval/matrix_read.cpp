@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::string_view kReferenceKeys[] = {"spp", "light_sampling", "sampler", "seed"};
-constexpr std::string_view kParts[] = {"axes", "fixed", "reference", "measure"};
+constexpr std::string_view kParts[] = {"axes", "fixed", "reference", "measure", "reproduction"};
 
 RenderSettings read_reference(const JsonValue& json) {
     json.require_keys(kReferenceKeys);

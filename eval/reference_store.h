@@ -6,9 +6,11 @@
 
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/frame.h"
+#include "core/render.h"
 #include "eval/regions.h"
 #include "eval/run_directory.h"
 
@@ -18,7 +20,23 @@ struct StoredReference {
     Image image;
     RegionMap regions;
     std::string file;  ///< relative to the run directory, without extension
+    /// Its own error in dB, from how its two halves differ: {"psnr_float_db":, "regions": {"edge":
+    /// {"psnr_float_db":}, ...}}. Null where there is no second half, or the halves are equal.
+    nlohmann::json error;
 };
+
+/// A reference as it is rendered: half of its samples with one seed, the rest with the next, so
+/// that the difference tells the error of the whole.
+struct ReferenceHalves {
+    Frame first;
+    Image second;              ///< radiance; empty for a reference of one sample
+    Image direct, indirect;    ///< of the second half
+    double second_weight = 0;  ///< its share of the samples
+};
+
+/// Renders both halves. Each is rendered by trace, which is given the half's settings.
+ReferenceHalves reference_halves(const RenderSettings& settings,
+                                 const std::function<Frame(const RenderSettings&)>& trace);
 
 /// What a reference is rendered with: its regions' planes, and direct and indirect light.
 Planes reference_planes();
@@ -28,9 +46,9 @@ class ReferenceStore {
     explicit ReferenceStore(const RunDirectory& directory) : directory_(directory) {}
 
     /// The reference that key describes in full (scene, its state, settings, program). Made by make
-    /// unless memory or the directory has it.
+    /// unless memory or the directory has it; the mean of its halves.
     const StoredReference& get(const std::string& key, const std::string& scene,
-                               const std::function<Frame()>& make);
+                               const std::function<ReferenceHalves()>& make);
 
   private:
     const RunDirectory& directory_;

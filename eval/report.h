@@ -11,8 +11,14 @@
 
 namespace vecino {
 
-/// Writes the error maps of all cells, the verdicts and the report; returns the report's path
-/// (output, or DIR/report.html when that is empty). Throws Error(file).
+/// Writes the verdicts and the report; returns the report's path (output, or DIR/report.html when
+/// that is empty). A name that ends in .md gets Markdown tables alone; any other one the page, and
+/// the error maps of all cells are written too. Throws Error(file).
 std::string write_report(const ReportData& data, const std::string& output = "");
+
+/// Writes one picture to a .png or .bmp file: a mosaic figure of the run's matrix, or, for an empty
+/// id, the chart of time against accuracy. Throws Error(usage), Error(file).
+void write_report_picture(const ReportData& data, const std::string& output,
+                          const std::string& figure);
 
 }  // namespace vecino

@@ -131,6 +131,7 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures) 
                       {"metrics", metrics_html()},
                       {"regions", regions_html()},
                       {"contents", contents_html(data)},
+                      {"references", references_html(data)},
                       {"failures", failures_html(data)},
                       {"provenance", provenance_html(data)},
                       {"data", script_json(data_json(data))},

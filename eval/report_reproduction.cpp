@@ -42,7 +42,9 @@ std::string signed_db(double value) {
 std::string difference_text(const PairResult& pair) {
     if (pair.outcome == Outcome::missing) return "no value";
     const Estimate& d = pair.difference_db;
-    return signed_db(d.mean) + " ± " + number_text(0.5 * (*d.high - *d.low), 2);
+    std::string text = signed_db(d.mean) + " ± " + number_text(0.5 * (*d.high - *d.low), 2);
+    if (pair.published_db) text += " (" + signed_db(*pair.published_db) + ")";
+    return text;
 }
 
 /// "22 of 24 hold; +0.31 to +4.20 dB"
@@ -123,15 +125,20 @@ std::string data_cell(const std::string& label, const std::string& html) {
     return "<td data-label=\"" + escaped(label) + "\">" + html + "</td>";
 }
 
+std::string value_text(const Estimate& value, const Item& item) {
+    const int decimals = item.unit == "%" ? 2 : 3;
+    std::string text = number_text(value.mean, decimals);
+    if (value.low) text += " ± " + number_text(0.5 * (*value.high - *value.low), decimals);
+    return text + " " + item.unit;
+}
+
 /// One row: what was published, what came out here.
 std::string item_row(const ReportData& data, const Item& item, const ItemResult& result) {
-    const int decimals = item.unit == "%" ? 2 : 3;
-    std::string ours = "–";
-    if (result.ours) {
-        ours = number_text(result.ours->mean, decimals);
-        if (result.ours->low)
-            ours += " ± " + number_text(0.5 * (*result.ours->high - *result.ours->low), decimals);
-        ours += " " + item.unit;
+    std::string ours = result.ours ? value_text(*result.ours, item) : "–";
+    if (result.tested) {
+        const Variant& variant = data.reproduction->specification.variants.front();
+        ours += "<span class=\"why\">" + value_text(*result.tested, item) + " at " +
+                escaped(variant.tested_at.text()) + "</span>";
     }
     std::string about = escaped(item.text);
     if (!item.note.empty()) about += "<span class=\"why\">" + escaped(item.note) + "</span>";
@@ -186,7 +193,9 @@ std::string claim_details(const ReportData& data, std::size_t index) {
     for (const Variant& variant : shown.specification.variants) {
         const auto& results = shown.result.claims[index];
         const ClaimResult* const whole = find_result(results, variant.id, "");
-        html += "<h4>" + escaped(variant.label) + "</h4>" +
+        const std::string tested = variant.tested_at.text();
+        html += "<h4>" + escaped(variant.label) +
+                (tested.empty() ? "" : ", at " + escaped(tested) + " (as published)") + "</h4>" +
                 pairs_html(data, *whole, find_result(results, variant.id, "interior"));
     }
     return html + command_html(claim_command(data, shown.specification.claims[index])) +
@@ -196,6 +205,7 @@ std::string claim_details(const ReportData& data, std::size_t index) {
 std::string claim_cell(const std::vector<ClaimResult>& results, const Variant& variant) {
     const ClaimResult& whole = *find_result(results, variant.id, "");
     std::string html = badge(whole.verdict) + "<span class=\"why\">" + counts_text(whole);
+    if (!variant.tested_at.empty()) html += "<br>at " + escaped(variant.tested_at.text());
     html += "</span>";
     const ClaimResult* const interior = find_result(results, variant.id, "interior");
     if (interior != nullptr)
@@ -280,7 +290,9 @@ std::string reproduction_html(const ReportData& data) {
         "psnr_float_db, <em>noise</em> the variance over seeds, <em>definition</em> the error at "
         "edges; differences are in dB, first less second. <em>Interior</em> is the same away from "
         "emitters and edges. A share of time is reproduced if its interval lies within the stated "
-        "points.</p>\n<h3>Numbers</h3>\n<table class=\"repro\">" +
+        "points. Where the published samples were traced with one seed, which has no interval, "
+        "seeds of fewer samples decide, as stated beside the verdict; where the published samples "
+        "say the opposite, a comparison is open.</p>\n<h3>Numbers</h3>\n<table class=\"repro\">" +
         head_row({"§", "what", "published", "here", "ratio", "verdict"});
     for (std::size_t i = 0; i < specification.items.size(); ++i)
         html += item_row(data, specification.items[i], shown.result.items[i]);

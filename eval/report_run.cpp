@@ -5,84 +5,17 @@
 #include <algorithm>
 #include <set>
 
+#include "eval/commands.h"
 #include "eval/html_text.h"
 #include "eval/metrics.h"
+#include "eval/reference_quality.h"
+#include "eval/report_facts.h"
 #include "eval/report_sections.h"
 
 namespace vecino {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string text_of(const Json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
-std::string counted(std::size_t count, const std::string& noun) {
-    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-/// The different values of a key of all rows, as a list.
-std::string values_of(const ReportData& data, const char* key) {
-    std::vector<std::string> values;
-    for (const Json& row : data.rows) {
-        if (!row.contains(key)) continue;
-        const std::string text = text_of(row[key]);
-        if (std::ranges::find(values, text) == values.end()) values.push_back(text);
-    }
-    std::string list;
-    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + value;
-    return list.empty() ? "unknown" : list;
-}
-
-std::string when(const ReportData& data) {
-    std::string date = data.run.value("finished_utc", "");
-    if (date.size() != 20) return "not finished";
-    return date.replace(10, 1, " ").substr(0, 16) + " UTC";
-}
-
-std::string program(const ReportData& data) {
-    const Json versions = data.run.value("versions", Json::object());
-    return "vecino " + versions.value("vecino", "of unknown version");
-}
-
-std::size_t failed_rows(const ReportData& data) {
-    const auto failed = [](const Json& row) { return row["status"] != "ok"; };
-    return static_cast<std::size_t>(std::ranges::count_if(data.rows, failed));
-}
-
-std::string cells(const ReportData& data) {
-    const std::size_t planned = data.run.value("cells", data.rows.size());
-    const std::size_t failed = failed_rows(data);
-    std::string text = std::to_string(data.rows.size());
-    if (planned > data.rows.size()) text += " of " + std::to_string(planned) + " so far";
-    text += " in " + counted(data.groups.size(), "group");
-    return text + (failed == 0 ? "; none failed" : "; " + std::to_string(failed) + " failed");
-}
-
-/// Parameters with one value in the whole matrix.
-std::string fixed_parameters(const ReportData& data) {
-    const std::set<std::string> apart{"scene", "method", "seed", "spp_asked"};
-    std::string text;
-    for (const auto& [key, value] : data.groups.front().params.items()) {
-        const bool varies = std::ranges::find(data.varying, key) != data.varying.end();
-        if (varies || apart.contains(key)) continue;
-        text += (text.empty() ? "" : ", ") + key + " " +
-                parameter_text(data.groups.front().params, key);
-    }
-    return text;
-}
-
-std::string references(const ReportData& data) {
-    std::vector<std::string> texts;
-    for (const Json& row : data.rows) {
-        const std::string text = reference_text(row);
-        if (std::ranges::find(texts, text) == texts.end()) texts.push_back(text);
-    }
-    std::string all;
-    for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
-    return all;
-}
 
 std::string fact(const std::string& name, const std::string& value) {
     return "<div><dt>" + name + "</dt><dd>" + escaped(value) + "</dd></div>\n";
@@ -112,14 +45,7 @@ std::string run_command_text(const ReportData& data) {
 
 std::string facts_html(const ReportData& data) {
     std::string html = "<dl class=\"facts\">\n";
-    html += fact("Finished", when(data));
-    html += fact("Program", program(data));
-    html += fact("Processor", values_of(data, "host"));
-    html += fact("Threads", values_of(data, "threads"));
-    html += fact("Cells", cells(data));
-    html += fact("Seeds", values_of(data, "seed"));
-    html += fact("In all cells", fixed_parameters(data));
-    html += fact("Reference", references(data));
+    for (const Fact& each : run_facts(data)) html += fact(each.name, each.value);
     return html + "</dl>\n<p class=\"command\"><span>Made again by</span> <code id=\"command\">" +
            escaped(run_command_text(data)) + "</code></p>";
 }
@@ -141,6 +67,29 @@ std::string regions_html() {
                 escaped(region.definition) + "</dd></div>\n";
     }
     return html;
+}
+
+std::string references_html(const ReportData& data) {
+    const auto db = [](const std::optional<double>& value) {
+        return value ? number_text(*value, 2) : std::string("–");
+    };
+    std::string html =
+        "<table class=\"plain\"><thead><tr><th scope=\"col\">scene</th><th "
+        "scope=\"col\">region</th><th scope=\"col\">own error, dB</th><th scope=\"col\">best "
+        "result, dB</th><th scope=\"col\">margin, dB</th><th scope=\"col\">results within 15 "
+        "dB</th></tr></thead><tbody>\n";
+    for (const ReferenceQuality& reference : reference_quality(data)) {
+        for (const ReferencePart& part : reference.parts) {
+            std::string close = part.own_db ? std::to_string(part.too_close.size()) : "–";
+            if (!part.too_close.empty()) close = "<strong>" + close + "</strong>";
+            html += "<tr><th scope=\"row\">" + escaped(reference.scene) + "</th><td>" +
+                    (part.region.empty() ? "whole" : escaped(part.region)) + "</td><td>" +
+                    db(part.own_db) + "</td><td>" + db(part.best_db) + " <code>" +
+                    escaped(part.best) + "</code></td><td>" + db(part.margin_db()) + "</td><td>" +
+                    close + "</td></tr>\n";
+        }
+    }
+    return html + "</tbody></table>";
 }
 
 std::string failures_html(const ReportData& data) {

@@ -14,6 +14,9 @@ namespace vecino {
 /// The whole page.
 std::string report_page(const ReportData& data, const ReportPictures& pictures);
 
+/// The same results as Markdown tables. The same bytes for the same run directory.
+std::string report_markdown(const ReportData& data);
+
 // About the run.
 std::string facts_html(const ReportData& data);
 std::string failures_html(const ReportData& data);
@@ -24,6 +27,8 @@ std::string run_command_text(const ReportData& data);
 std::string shell_word(const std::string& text);
 std::string metrics_html();
 std::string regions_html();
+/// How good the references are for what they judge.
+std::string references_html(const ReportData& data);
 std::string contents_html(const ReportData& data);
 
 // The chart's frame and the table.

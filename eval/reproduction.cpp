@@ -6,24 +6,10 @@
 #include <set>
 
 #include "eval/axes.h"
+#include "eval/reproduction_pairs.h"
 
 namespace vecino {
 namespace {
-
-constexpr const char* kSceneKey = "scene";
-
-/// Results of a pair are of one scene, and agree in all else that both have, unless a selection of
-/// theirs names it. A group's seed is that of its first cell and says nothing.
-bool agree(const GroupSummary& a, const GroupSummary& b, const ClaimTest& test) {
-    return std::ranges::all_of(cell_keys(), [&](const std::string_view name) {
-        const std::string key(name);
-        const bool is_free = key != kSceneKey && (test.of.names(key) || test.than.names(key));
-        if (is_free || key == "seed") return true;
-        const auto x = selected_value(a.params, key);
-        const auto y = selected_value(b.params, key);
-        return x.is_null() || y.is_null() || x == y;
-    });
-}
 
 /// What a selection says about renders alone: path tracing reads nothing else.
 Selection render_part(Selection selection) {
@@ -32,45 +18,6 @@ Selection render_part(Selection selection) {
         if (key == "method" || is_scheme_key(key)) selection = selection.without(key);
     }
     return selection;
-}
-
-/// Mean squared errors, or variances, by seed.
-std::vector<double> values_of(const GroupSummary& group, Quantity quantity,
-                              const RegionName& region) {
-    const SeedStatistics* const statistics = group.statistics_of(region);
-    if (statistics == nullptr) return {};
-    return quantity == Quantity::noise ? statistics->noise_by_seed : statistics->mse;
-}
-
-Outcome outcome_of(const Estimate& difference, const ClaimTest& test) {
-    const double sign = test.relation == Relation::lower ? -1 : 1;
-    double low = sign * *(sign > 0 ? difference.low : difference.high);
-    double high = sign * *(sign > 0 ? difference.high : difference.low);
-    const double margin = test.margin_db;
-    if (test.relation == Relation::same) {
-        if (low > margin || high < -margin) return Outcome::fails;
-        return low > -margin && high < margin ? Outcome::holds : Outcome::open;
-    }
-    if (low > margin) return Outcome::holds;
-    return high < margin ? Outcome::fails : Outcome::open;
-}
-
-struct Place {
-    RegionName of, than;
-};
-
-PairResult compare_pair(const GroupSummary& of, const GroupSummary& than, const ClaimTest& test,
-                        const Place& place) {
-    PairResult pair{of.scene, of.group, than.group, Outcome::missing, {}};
-    if (of.seeds_done != than.seeds_done) return pair;
-    const auto x = values_of(of, test.quantity, place.of);
-    const auto y = values_of(than, test.quantity, place.than);
-    // A lower error is a higher quality.
-    const auto difference = test.quantity == Quantity::quality ? ratio_db(y, x) : ratio_db(x, y);
-    if (!difference) return pair;
-    pair.difference_db = *difference;
-    pair.outcome = outcome_of(*difference, test);
-    return pair;
 }
 
 class Evaluation {
@@ -102,7 +49,7 @@ class Evaluation {
         }
         result.slowest = slowest->group;
         if (item.quantity == ItemQuantity::largest_time_share) {
-            share(item, *slowest, result);
+            share(item, result);
         } else {
             time(item, *slowest, result);
         }
@@ -117,14 +64,30 @@ class Evaluation {
         const Place place{own_regions ? test.of_region : result.region,
                           own_regions ? test.than_region : result.region};
         const std::size_t before = result.pairs.size();
-        for (const GroupSummary* of : select(groups_, test.of, variant)) {
-            for (const GroupSummary* than : select(groups_, test.than, variant)) {
+        const Variant tested = variant.tested();
+        for (const GroupSummary* of : select(groups_, test.of, tested)) {
+            for (const GroupSummary* than : select(groups_, test.than, tested)) {
                 if (!agree(*of, *than, test)) continue;
-                result.pairs.push_back(compare_pair(*of, *than, test, place));
+                PairResult pair = compare_pair(*of, *than, test, place);
+                if (!variant.tested_at.empty()) {
+                    hold_against_published(pair, published(*of, test.of, variant),
+                                           published(*than, test.than, variant), {test, place});
+                }
+                result.pairs.push_back(std::move(pair));
             }
         }
         // What the other tests say is not the whole claim, unless any of them is enough.
         if (!is_any && result.pairs.size() == before) ++result.missing;
+    }
+
+    /// The variant's own group for one that it is tested at; null where there is none.
+    const GroupSummary* published(const GroupSummary& tested, const Selection& selection,
+                                  const Variant& variant) const {
+        const nlohmann::json wanted = identity(tested, variant.tested_at);
+        for (const GroupSummary* group : select(groups_, selection, variant)) {
+            if (identity(*group, variant.tested_at) == wanted) return group;
+        }
+        return nullptr;
     }
 
     static void count(ClaimResult& result, Outcome outcome) {
@@ -175,33 +138,48 @@ class Evaluation {
     }
 
     /// The slowest path tracing of the same scenes, rendered alike.
-    const GroupSummary* slowest_path(const Item& item) const {
-        auto paths = select(groups_, render_part(item.of), specification_.variants.front());
+    const GroupSummary* slowest_path(const Item& item, const Variant& variant) const {
+        auto paths = select(groups_, render_part(item.of), variant);
         std::erase_if(paths, [](const GroupSummary* group) { return group->method != "path"; });
         return slowest_of(paths);
     }
 
-    void share(const Item& item, const GroupSummary& slowest, ItemResult& result) const {
-        const GroupSummary* const path = slowest_path(item);
-        if (path == nullptr || path->seeds_done != slowest.seeds_done) {
+    /// In per cent, over seeds; none where one of both is missing or not of the other's seeds.
+    std::optional<Estimate> share_of(const Item& item, const Variant& variant) const {
+        const GroupSummary* const slowest = slowest_of(select(groups_, item.of, variant));
+        const GroupSummary* const path = slowest_path(item, variant);
+        if (slowest == nullptr || path == nullptr || path->seeds_done != slowest->seeds_done)
+            return std::nullopt;
+        std::vector<double> shares;
+        for (std::size_t i = 0; i < path->times_s.size(); ++i)
+            shares.push_back(100 * slowest->times_s[i] / path->times_s[i]);
+        return estimate(shares);
+    }
+
+    void share(const Item& item, ItemResult& result) const {
+        const Variant& variant = specification_.variants.front();
+        result.ours = share_of(item, variant);
+        if (!variant.tested_at.empty()) result.tested = share_of(item, variant.tested());
+        const auto& decisive = variant.tested_at.empty() ? result.ours : result.tested;
+        if (!result.ours || !decisive) {
             result.remark = "no path tracing of the same seeds";
             return;
         }
-        std::vector<double> shares;
-        for (std::size_t i = 0; i < path->times_s.size(); ++i)
-            shares.push_back(100 * slowest.times_s[i] / path->times_s[i]);
-        result.ours = estimate(shares);
-        if (!result.ours->low) {
+        if (!decisive->low) {
             result.remark = "one seed has no interval";
             return;
         }
-        const double off_low = *result.ours->low - item.published;
-        const double off_high = *result.ours->high - item.published;
-        const bool inside = off_low >= -item.within && off_high <= item.within;
-        const bool outside = off_low > item.within || off_high < -item.within;
-        result.verdict = inside    ? Verdict::reproduced
-                         : outside ? Verdict::not_reproduced
-                                   : Verdict::trend;
+        // What the published parameters gave, in however few seeds, has to agree.
+        const auto is_within = [&](double share) {
+            return std::abs(share - item.published) <= item.within;
+        };
+        const bool inside = is_within(*decisive->low) && is_within(*decisive->high);
+        const bool outside = *decisive->low > item.published + item.within ||
+                             *decisive->high < item.published - item.within;
+        const bool published_inside = is_within(result.ours->mean);
+        result.verdict = inside && published_inside     ? Verdict::reproduced
+                         : outside && !published_inside ? Verdict::not_reproduced
+                                                        : Verdict::trend;
     }
 
     void time(const Item& item, const GroupSummary& slowest, ItemResult& result) const {
@@ -224,14 +202,16 @@ class Evaluation {
     /// The time in which other variants' path tracing has the error of the extrapolated one: noise
     /// falls as 1 / spp.
     std::string equal_error(const Item& item, const GroupSummary& slowest) const {
-        const SeedStatistics* const own = slowest.statistics_of("");
+        const GroupSummary* const measured = noise_measured(item, slowest);
         std::string text;
         for (const Variant& variant : specification_.variants) {
-            for (const GroupSummary* other : select(groups_, item.of, variant)) {
+            for (const GroupSummary* other : select(groups_, item.of, variant.tested())) {
                 const SeedStatistics* const its = other->statistics_of("");
-                if (other->group == slowest.group || other->scene != slowest.scene) continue;
-                if (own == nullptr || its == nullptr || !own->noise || !its->noise) continue;
-                const double noise = *own->noise * slowest.params["spp"].get<double>() / item.spp;
+                if (measured == nullptr || other == measured || other->scene != slowest.scene)
+                    continue;
+                if (its == nullptr || !its->noise) continue;
+                const double noise = *measured->statistics_of("")->noise *
+                                     measured->params["spp"].get<double>() / item.spp;
                 char line[160];
                 std::snprintf(line, sizeof line, "equal noise takes %.3g min by %s",
                               other->time_s * *its->noise / noise / 60.0, variant.label.c_str());
@@ -239,6 +219,18 @@ class Evaluation {
             }
         }
         return text.empty() ? "no other path tracing to compare with" : text;
+    }
+
+    /// The same path tracing where the first variant is tested: one seed alone shows no noise.
+    const GroupSummary* noise_measured(const Item& item, const GroupSummary& slowest) const {
+        const Variant& variant = specification_.variants.front();
+        const nlohmann::json wanted = identity(slowest, variant.tested_at);
+        for (const GroupSummary* group : select(groups_, item.of, variant.tested())) {
+            const SeedStatistics* const own = group->statistics_of("");
+            if (own != nullptr && own->noise && identity(*group, variant.tested_at) == wanted)
+                return group;
+        }
+        return nullptr;
     }
 
     const Reproduction& specification_;

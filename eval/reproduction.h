@@ -27,7 +27,7 @@ std::string verdict_text(Verdict verdict);
 enum class Outcome {
     holds,    ///< the 95 % interval excludes equality (or the margin)
     fails,    ///< so does it on the other side
-    open,     ///< the interval includes equality
+    open,     ///< the interval includes equality, or published_db lies on its other side
     missing,  ///< one of both has no value, or not the other's seeds, or too few: below 2 for
               ///< quality, 3 for noise
 };
@@ -37,6 +37,9 @@ struct PairResult {
     std::string scene, of, than;  ///< groups
     Outcome outcome = Outcome::missing;
     Estimate difference_db;  ///< of - than, quality or noise, over common seeds
+    /// The same where the variant's own results are others than those that decide (tested_at).
+    /// None: they are the same, lack a value, or are too few seeds for it.
+    std::optional<double> published_db;
 };
 
 struct ClaimResult {
@@ -50,10 +53,11 @@ struct ClaimResult {
 
 struct ItemResult {
     Verdict verdict = Verdict::not_testable;
-    std::optional<Estimate> ours;  ///< in the item's unit
-    double ratio = 0;              ///< ours / published; 0 without ours
-    std::string slowest;           ///< the group that the number is of
-    std::string remark;            ///< why there is no verdict, or what else to know
+    std::optional<Estimate> ours;    ///< in the item's unit
+    std::optional<Estimate> tested;  ///< a share where the first variant is tested, if elsewhere
+    double ratio = 0;                ///< ours / published; 0 without ours
+    std::string slowest;             ///< the group that the number is of
+    std::string remark;              ///< why there is no verdict, or what else to know
 };
 
 struct ReproductionResult {

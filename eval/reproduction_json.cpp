@@ -28,6 +28,7 @@ Json pair_json(const PairResult& pair) {
               {"than", pair.than},
               {"outcome", outcome_text(pair.outcome)}};
     if (pair.outcome != Outcome::missing) json["difference_db"] = estimate_json(pair.difference_db);
+    if (pair.published_db) json["published_db"] = *pair.published_db;
     return json;
 }
 
@@ -55,6 +56,7 @@ Json reproduction_json(const Reproduction& specification, const ReproductionResu
                                  {"published", item.published},
                                  {"unit", item.unit},
                                  {"ours", estimate_json(found.ours)},
+                                 {"tested", estimate_json(found.tested)},
                                  {"ratio", found.ours ? Json(found.ratio) : Json(nullptr)},
                                  {"verdict", verdict_text(found.verdict)},
                                  {"slowest", found.slowest},

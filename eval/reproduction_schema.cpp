@@ -60,6 +60,8 @@ constexpr DescribedKey kVariantKeys[] = {
     {"id", required, "", schema_of<kText>},
     {"label", required, "shown in the report", schema_of<kText>},
     {"where", optional, "the results that it is about", selection},
+    {"tested_at", optional,
+     "what differs in the results, of several seeds, that decide claims and shares", selection},
 };
 
 constexpr DescribedKey kItemKeys[] = {

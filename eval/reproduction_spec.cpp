@@ -39,8 +39,9 @@ Selection selection_at(const JsonValue& json, std::string_view key) {
 }
 
 Variant read_variant(const JsonValue& json) {
-    json.require_keys({"id", "label", "where"});
-    return {json.at("id").string(), json.at("label").string(), selection_at(json, "where")};
+    json.require_keys({"id", "label", "where", "tested_at"});
+    return {json.at("id").string(), json.at("label").string(), selection_at(json, "where"),
+            selection_at(json, "tested_at")};
 }
 
 bool is_region_name(std::string_view name) {
@@ -167,6 +168,12 @@ Selection fixed_selection(const JsonValue& matrix) {
 }
 
 }  // namespace
+
+Variant Variant::tested() const {
+    Variant result{id, label, tested_at, {}};
+    result.where.add_missing(where);
+    return result;
+}
 
 Reproduction read_reproduction(const JsonValue& matrix) {
     const JsonValue json = matrix.at("reproduction");

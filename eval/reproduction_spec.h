@@ -16,6 +16,12 @@ namespace vecino {
 struct Variant {
     std::string id, label;
     Selection where;  ///< with the matrix's fixed values where it names none
+    /// What differs from `where` in the results that decide claims and shares: one costly seed, as
+    /// published, has no interval, but several cheaper ones have. Empty: those of `where` decide.
+    Selection tested_at;
+
+    /// The same variant at the results that decide.
+    [[nodiscard]] Variant tested() const;
 };
 
 enum class Quantity {

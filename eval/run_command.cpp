@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
@@ -35,7 +36,9 @@ void print_verdicts(const ReportReproduction& reproduction) {
             text += text.empty() ? "" : ", ";
             text += std::to_string(counts[verdict]) + " " + verdict_text(verdict);
         }
-        std::printf("claims, %s: %s\n", variant.label.c_str(), text.c_str());
+        const std::string tested = variant.tested_at.text();
+        std::printf("claims, %s%s: %s\n", variant.label.c_str(),
+                    tested.empty() ? "" : (", tested at " + tested).c_str(), text.c_str());
     }
 }
 
@@ -96,6 +99,27 @@ ExitCode run_run(const RunArguments& arguments) {
     return summary.failed > 0 ? ExitCode::quality : ExitCode::ok;
 }
 
+bool is_picture(const std::string& path) {
+    const std::string extension = std::filesystem::path(path).extension().string();
+    return extension == ".png" || extension == ".bmp";
+}
+
+ExitCode run_report(const std::string& directory, const std::string& output,
+                    const std::string& figure) {
+    if (!figure.empty() && !is_picture(output))
+        throw Error(ExitCode::usage,
+                    "command line: --figure: found without a picture to write, "
+                    "allowed: with -o FILE.png or FILE.bmp");
+    const ReportData data = read_report_data(directory);
+    if (is_picture(output)) {
+        write_report_picture(data, output, figure);
+        std::printf("picture: %s\n", output.c_str());
+    } else {
+        std::printf("report: %s\n", write_report(data, output).c_str());
+    }
+    return ExitCode::ok;
+}
+
 }  // namespace
 
 void add_run_command(CLI::App& app, Action& chosen) {
@@ -118,20 +142,23 @@ void add_run_command(CLI::App& app, Action& chosen) {
 
 void add_report_command(CLI::App& app, Action& chosen) {
     struct Arguments {
-        std::string directory, output;
+        std::string directory, output, figure;
     };
     auto arguments = std::make_shared<Arguments>();
     CLI::App* const command = app.add_subcommand("report", "write the report of a run again");
     command->add_option("DIR", arguments->directory, "run directory")
         ->required()
         ->check(not_empty());
-    command->add_option("-o", arguments->output, "HTML file; default: DIR/report.html");
+    command->add_option("-o", arguments->output,
+                        "HTML file; .md: tables alone; .png: time against accuracy, or a figure; "
+                        "default: DIR/report.html");
+    command
+        ->add_option("--figure", arguments->figure,
+                     "with -o FILE.png: a mosaic of the matrix, by its id")
+        ->check(not_empty());
     command->callback([arguments, &chosen] {
         chosen = [arguments] {
-            std::printf(
-                "report: %s\n",
-                write_report(read_report_data(arguments->directory), arguments->output).c_str());
-            return ExitCode::ok;
+            return run_report(arguments->directory, arguments->output, arguments->figure);
         };
     });
 }

@@ -29,6 +29,12 @@ double traced_samples(const RenderSettings& settings) {
     return FrameJob{{}, settings}.samples();
 }
 
+/// What a run took, over all its goes.
+struct Spent {
+    double seconds = 0;
+    double samples = 0;
+};
+
 class Runner {
   public:
     Runner(const Matrix& matrix, RunDirectory directory, const RunOptions& options)
@@ -87,17 +93,25 @@ class Runner {
 
   private:
     // Another matrix's results would be lost when results.jsonl is written anew.
-    void require_same_matrix() const {
+    void require_same_matrix() {
         const std::string file = directory_.file("run.json");
         if (!std::filesystem::exists(file)) return;
         const nlohmann::json before = nlohmann::json::parse(read_file(file), nullptr, false);
         const nlohmann::json found =
             before.is_object() ? before.value("name", nlohmann::json()) : "";
         const std::string name = found.is_string() ? found.get<std::string>() : found.dump();
-        if (name == matrix_.name) return;
+        if (name == matrix_.name) return read_spent(before);
         throw Error(ExitCode::usage, directory_.path() + ": found results of the matrix \"" + name +
                                          "\", allowed: \"" + matrix_.name +
                                          "\" or an empty directory");
+    }
+
+    void read_spent(const nlohmann::json& before) {
+        const auto number = [&](const char* key) {
+            const nlohmann::json value = before.value(key, nlohmann::json());
+            return value.is_number() ? value.get<double>() : 0.0;
+        };
+        before_ = {number("seconds"), number("samples")};
     }
 
     void load_scene_of(const Cell& cell) {
@@ -148,7 +162,9 @@ class Runner {
             const auto known = with_kept.contains(cell.group) ? equal_time_.spp(cell)
                                                               : equal_time_.spp(cell, state);
             if (known) continue;
-            equal_time_.put(cell, state, measure_equal_time_spp(scenes_.at(cell.scene), cell));
+            const auto like = equal_time_.spp_like(cell, state);
+            equal_time_.put(cell, state,
+                            like ? *like : measure_equal_time_spp(scenes_.at(cell.scene), cell));
         }
         for (Cell& cell : cells_) {
             if (cell.budget != Budget::equal_time) continue;
@@ -210,8 +226,10 @@ class Runner {
             frame_key(cell.scene, settings) + scene_hashes_.at(cell.scene) + build_;
         return references_.get(key, stem(cell.scene), [&] {
             settings.planes = reference_planes();
-            return render_with_progress(cell.scene, settings, stem(cell.scene) + " reference")
-                .frame;
+            return reference_halves(settings, [&](const RenderSettings& half) {
+                return render_with_progress(cell.scene, half, stem(cell.scene) + " reference")
+                    .frame;
+            });
         });
     }
 
@@ -255,6 +273,7 @@ class Runner {
                            {"samples_ratio", cell.samples_ratio()},
                            {"reference", reference_json(cell)},
                            {"reference_file", input.reference->file},
+                           {"reference_error", input.reference->error},
                            {"scene_hash", scene_hashes_.at(cell.scene)},
                            {"build", build_},
                            {"host", run_["versions"]["cpu"]}};
@@ -280,6 +299,8 @@ class Runner {
         run_["finished_utc"] = date;
         run_["command"] = "vecino run " + matrix_.file + " -o " + directory_.path();
         run_["cells"] = cells_.size();
+        run_["seconds"] = before_.seconds + watch_.seconds();
+        run_["samples"] = before_.samples + done_samples_;
         directory_.write_run(run_);
     }
 
@@ -296,6 +317,8 @@ class Runner {
     std::vector<PlannedCell> plan_;
     nlohmann::json run_;
     std::string build_;
+    Spent before_;
+    Stopwatch watch_;
     std::size_t done_cells_ = 0;
     ProgressBar* bar_ = nullptr;
     double total_samples_ = 0;

@@ -99,6 +99,18 @@ Selection Selection::without(const std::string& key) const {
     return rest;
 }
 
+std::string Selection::text() const {
+    std::string text;
+    for (const auto& [key, values] : values_) {
+        text += (text.empty() ? "" : ", ") + key;
+        for (const Json& value : values) {
+            text += &value == values.data() ? " " : " or ";
+            text += value.is_string() ? value.get<std::string>() : value.dump();
+        }
+    }
+    return text;
+}
+
 void Selection::add_missing(const Selection& other) {
     values_.insert(other.values_.begin(), other.values_.end());
 }

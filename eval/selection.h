@@ -35,6 +35,9 @@ class Selection {
     [[nodiscard]] std::vector<std::string> mismatches(const nlohmann::json& params) const;
     /// Takes over another's values at keys that this one does not name.
     void add_missing(const Selection& other);
+    /// "spp 1000, window 3 or 5"; empty where nothing is named.
+    [[nodiscard]] std::string text() const;
+    [[nodiscard]] bool empty() const { return values_.empty(); }
 
   private:
     std::map<std::string, std::vector<nlohmann::json>> values_;

@@ -53,6 +53,7 @@ std::string json_version() {
 
 nlohmann::json version_json() {
     return {{"vecino", VECINO_VERSION},
+            {"commit", std::string(kCommit)},
             {"embree", embree_version()},
             {"openimageio", image_library_version()},
             {"opencv", CV_VERSION},
@@ -71,7 +72,8 @@ std::string version_text() {
     const auto text = [&](const char* key) {
         return v[key].is_string() ? v[key].get<std::string>() : v[key].dump();
     };
-    return "vecino " + text("vecino") + "\nEmbree " + text("embree") + ", OpenImageIO " +
+    const std::string commit = kCommit.empty() ? "" : " (commit " + text("commit") + ")";
+    return "vecino " + text("vecino") + commit + "\nEmbree " + text("embree") + ", OpenImageIO " +
            text("openimageio") + ", OpenCV " + text("opencv") + ", GLM " + text("glm") +
            ", nlohmann-json " + text("nlohmann_json") + ", CLI11 " + text("cli11") +
            "\nSIMD width " + text("simd_width") + ", " + text("threads") + " threads, " +

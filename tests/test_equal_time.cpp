@@ -207,3 +207,31 @@ TEST_CASE("an entry that is no budget is not one", "[equal_time]") {
     run.temp.write("equal_time.json", sound.dump());
     CHECK(EqualTimeBudgets(file).spp(run.cell(), "state") == 7);
 }
+
+TEST_CASE("groups that differ in their weights alone share a measured budget and its frame",
+          "[equal_time]") {
+    EqualTimeRun run;
+    run.json["axes"]["scheme"] = "distance2d";
+    run.json["axes"]["weighting"] = {"proportional", "inverse"};
+    CHECK(run.run().failed == 0);
+    const Json budgets = Json::parse(run.stored());
+    REQUIRE(budgets.size() == 2);
+    const Json first = budgets.front();
+    for (const Json& entry : budgets) CHECK(entry["spp"] == first["spp"]);
+    std::map<int, double> trace_s;  // by seed: one frame, and so one time
+    for (const auto& [name, row] : run.rows()) {
+        if (row["method"] != "distance2d") continue;
+        const double time = row["time_s"]["trace"];
+        CHECK(trace_s.try_emplace(row["seed"], time).first->second == time);
+    }
+    CHECK(trace_s.size() == 2);
+}
+
+TEST_CASE("an estimate counts a budget that is not measured yet beside equal samples",
+          "[equal_time]") {
+    EqualTimeRun run;
+    const double measured = estimate_run(run.load(), run.directory).samples;
+    run.json["axes"]["budget"] = {"equal_samples", "equal_time"};
+    const double both = estimate_run(run.load(), run.directory).samples;
+    CHECK(both - measured == 2.0 * 16 * 12 * 1000);  // two seeds, as many samples as path tracing
+}

@@ -351,3 +351,16 @@ TEST_CASE("the samples that a budget came to are told", "[matrix_extends]") {
     CHECK(ratio_of("box.nearest.f3.thesis_equal_time.s1") == Approx(19 * 6.0 / (4 * 70)));
     CHECK(ratio_of("box.path.s1") == 1.0);
 }
+
+TEST_CASE("an extending matrix replaces parts of a reproduction, and keeps the rest",
+          "[matrix_extends]") {
+    const Matrix quick = load_matrix(std::string(VECINO_SOURCE_DIR) + "/configs/thesis-quick.json");
+    const Matrix thesis = load_matrix(std::string(VECINO_SOURCE_DIR) + "/configs/thesis.json");
+    const Json& own = quick.document["reproduction"];
+    const Json& base = thesis.document["reproduction"];
+    CHECK(own["claims"] == base["claims"]);
+    CHECK(own["items"] == base["items"]);
+    CHECK(own["variants"] != base["variants"]);
+    // The quick run has all of its seeds at one number of samples.
+    for (const Json& variant : own["variants"]) CHECK_FALSE(variant.contains("tested_at"));
+}
