@@ -11,6 +11,7 @@ extern const std::string_view kReportHtml;
 extern const std::string_view kReportCss;
 extern const std::string_view kReproductionCss;
 extern const std::string_view kReportChartsJs;
+extern const std::string_view kConvergenceJs;
 extern const std::string_view kReportJs;
 extern const std::string_view kChartJs;
 

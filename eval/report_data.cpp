@@ -155,6 +155,7 @@ ReportData read_report_data(const std::string& directory) {
     data.groups =
         summarise(data.rows, group_statistics(RunDirectory::open(data.directory), data.rows));
     read_reproduction_of(data);
+    data.convergence = convergence(data.groups);
     for (const GroupSummary& group : data.groups) {
         const bool is_new = std::ranges::find(data.scenes, group.scene) == data.scenes.end();
         if (is_new) data.scenes.push_back(group.scene);

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "eval/convergence.h"
 #include "eval/reproduction.h"
 #include "eval/summary.h"
 
@@ -35,6 +36,7 @@ struct ReportData {
     std::map<std::string, std::size_t> row;  ///< index into rows, by cell
     std::vector<GroupSummary> groups;
     std::optional<ReportReproduction> reproduction;  ///< none: the matrix claims nothing
+    std::vector<ConvergenceCurve> convergence;       ///< of path tracing; may be empty
     std::vector<std::string> scenes;                 ///< in the order of the groups
     std::vector<MethodStyle> methods;  ///< path tracing first, then schemes, then others
     std::vector<std::string> varying;  ///< parameters that tell groups apart

@@ -33,6 +33,7 @@ Json data_json(const ReportData& data) {
             {"methods", methods_json(data)},
             {"scenes", data.scenes},
             {"graphs", graphs_json(data)},
+            {"convergence", convergence_json(data.convergence)},
             {"time_decimals", data.time_decimals}};
 }
 
@@ -66,11 +67,13 @@ std::string legend_html(const ReportData& data) {
     return html;
 }
 
-/// Links to the sections that only a reproduction has.
+/// Links to the sections that not every run has.
 std::string contents_html(const ReportData& data) {
-    if (!data.reproduction) return "";
+    std::string html;
+    if (!data.convergence.empty()) html += "<a href=\"#convergence\">Convergence</a> ";
+    if (!data.reproduction) return html;
     const Reproduction& specification = data.reproduction->specification;
-    std::string html = "<a href=\"#reproduction\">Reproduction</a> ";
+    html = "<a href=\"#reproduction\">Reproduction</a> " + html;
     if (!specification.graphs.empty()) html += "<a href=\"#graphs\">Graphs</a> ";
     if (!specification.figures.empty()) html += "<a href=\"#figures\">Figures</a> ";
     return html;
@@ -120,6 +123,7 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures) 
                       {"picture_sources", pictures.has_linked ? "data: file: 'self'" : "data:"},
                       {"facts", facts_html(data)},
                       {"reproduction", reproduction_html(data)},
+                      {"convergence", convergence_html(data)},
                       {"graphs", graphs_html(data)},
                       {"figures", figures_html(data, pictures)},
                       {"switches", chart_switches_html(data)},
@@ -137,6 +141,7 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures) 
                       {"data", script_json(data_json(data))},
                       {"chart_js", script_source(kChartJs)},
                       {"report_charts_js", script_source(kReportChartsJs)},
+                      {"convergence_js", script_source(kConvergenceJs)},
                       {"report_js", script_source(kReportJs)}});
 }
 

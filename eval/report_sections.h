@@ -46,6 +46,9 @@ std::string graphs_html(const ReportData& data);
 nlohmann::json graphs_json(const ReportData& data);
 std::string figures_html(const ReportData& data, const ReportPictures& pictures);
 
+/// Error of path tracing against samples and time; empty where no groups differ in spp alone.
+std::string convergence_html(const ReportData& data);
+
 // Pictures.
 std::string colour_bars_html(const ReportPictures& pictures);
 std::string cards_html(const ReportData& data, const ReportPictures& pictures);

@@ -44,6 +44,7 @@ void print_verdicts(const ReportReproduction& reproduction) {
 
 void print_results(const ReportData& data) {
     std::printf("%s", summary_table(data.groups).c_str());
+    std::printf("%s", convergence_table(data.convergence).c_str());
     if (data.reproduction) print_verdicts(*data.reproduction);
     for (const nlohmann::json& row : data.rows) {
         if (row["status"] == "ok") continue;

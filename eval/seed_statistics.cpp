@@ -18,6 +18,14 @@ double sum_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
+/// Sum of squares of the distances from their mean.
+double spread_of(const std::vector<double>& values) {
+    const double mean = sum_of(values) / static_cast<double>(values.size());
+    double sum = 0;
+    for (const double value : values) sum += (value - mean) * (value - mean);
+    return sum;
+}
+
 /// Sums of squares over pixels and channels, by seed.
 struct Sums {
     explicit Sums(std::size_t seeds) : error(seeds), deviation(seeds) {}
@@ -25,8 +33,14 @@ struct Sums {
     std::size_t pixels = 0;
     std::vector<double> error;      ///< from the reference
     std::vector<double> deviation;  ///< from the mean over seeds
+    double relative = 0;            ///< the same of linear values over r^2 + 0.01, of all seeds
 
-    /// One channel value of every seed.
+    /// One channel value of every seed, linear.
+    void add_linear(const std::vector<double>& values, double reference) {
+        relative += spread_of(values) / (reference * reference + 0.01);
+    }
+
+    /// One channel value of every seed, as displayed.
     void add(const std::vector<double>& values, double reference) {
         const double mean = sum_of(values) / static_cast<double>(values.size());
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -50,6 +64,7 @@ SeedStatistics statistics_of(const Sums& sums) {
     const double noise = total / (n - 1);
     result.noise = noise;
     result.bias2 = sum_of(result.mse) / n - noise;
+    result.relative_variance = per_value(sums.relative) / (n - 1);
     if (n < 3) return result;
     for (std::size_t i = 0; i < sums.error.size(); ++i) {
         const double own = per_value(sums.deviation[i]);
@@ -77,17 +92,24 @@ std::vector<Sums> sum_up(std::span<const Image> images, const Image& reference,
     std::ranges::transform(images, std::back_inserter(display), display_image);
     std::vector<Sums> sums(1 + (regions ? kRegions.size() : 0), Sums(images.size()));
     std::vector<double> values(images.size());
+    const auto fill = [&](const auto& from, std::size_t pixel, int channel) {
+        std::ranges::transform(from, values.begin(), [&](const Image& image) {
+            return static_cast<double>(image.values()[pixel][channel]);
+        });
+    };
     for (std::size_t p = 0; p < reference.values().size(); ++p) {
         const glm::vec3 wanted = display_value(reference.values()[p]);
         Sums* const region = regions ? &sums[1 + region_index(regions->values()[p])] : nullptr;
         ++sums[0].pixels;
         if (region) ++region->pixels;
         for (int c = 0; c < 3; ++c) {
-            std::ranges::transform(display, values.begin(), [&](const Image& image) {
-                return static_cast<double>(image.values()[p][c]);
-            });
+            fill(display, p, c);
             sums[0].add(values, static_cast<double>(wanted[c]));
             if (region) region->add(values, static_cast<double>(wanted[c]));
+            const auto linear = static_cast<double>(reference.values()[p][c]);
+            fill(images, p, c);
+            sums[0].add_linear(values, linear);
+            if (region) region->add_linear(values, linear);
         }
     }
     return sums;
@@ -102,6 +124,7 @@ Json one_json(const SeedStatistics& s) {
             {"mse", s.mse},
             {"noise", optional_json(s.noise)},
             {"bias2", optional_json(s.bias2)},
+            {"relative_variance", optional_json(s.relative_variance)},
             {"noise_by_seed", s.noise_by_seed},
             {"bias2_by_seed", s.bias2_by_seed}};
 }
@@ -124,6 +147,7 @@ SeedStatistics read_one(const JsonValue& json) {
     s.mse = read_numbers(json.at("mse"));
     s.noise = read_optional(json.at("noise"));
     s.bias2 = read_optional(json.at("bias2"));
+    s.relative_variance = read_optional(json.at("relative_variance"));
     s.noise_by_seed = read_numbers(json.at("noise_by_seed"));
     s.bias2_by_seed = read_numbers(json.at("bias2_by_seed"));
     return s;

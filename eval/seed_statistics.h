@@ -10,6 +10,8 @@
 //           as half of the mean of (X_i - X_j)^2 over all pairs of seeds
 //   bias2   mean over seeds of mse_i, less noise: an unbiased estimate of the squared bias. It
 //           includes the reference's own error, and can be below 0 where there is little bias.
+// One is of linear values, as relMSE is, of which it is the part that noise makes:
+//   relative_variance   mean of (sample variance over seeds) / (R^2 + 0.01)
 #pragma once
 
 #include <cstddef>
@@ -25,9 +27,10 @@ namespace vecino {
 
 struct SeedStatistics {
     std::size_t pixels = 0;
-    std::vector<double> mse;      ///< by seed; empty without pixels
-    std::optional<double> noise;  ///< none below 2 seeds, or without pixels
-    std::optional<double> bias2;  ///< none where noise is
+    std::vector<double> mse;                  ///< by seed; empty without pixels
+    std::optional<double> noise;              ///< none below 2 seeds, or without pixels
+    std::optional<double> bias2;              ///< none where noise is
+    std::optional<double> relative_variance;  ///< none where noise is
     // Jackknife pseudo-values, for estimate(): their means are noise and bias2, and their spread
     // tells how sure those are. Empty below 3 seeds, or without pixels.
     std::vector<double> noise_by_seed;  ///< n noise - (n - 1) (noise without seed i)
@@ -50,8 +53,9 @@ std::optional<SeedStatisticsByRegion> seed_statistics(std::span<const Image> ima
                                                       const Image& reference,
                                                       const RegionMap* regions = nullptr);
 
-/// {"pixels":, "mse": [...], "noise":, "bias2":, "noise_by_seed": [...], "bias2_by_seed": [...]},
-/// null for none; with regions also "regions": {"emitter": {the same}, ...}.
+/// {"pixels":, "mse": [...], "noise":, "bias2":, "relative_variance":, "noise_by_seed": [...],
+/// "bias2_by_seed": [...]}, null for none; with regions also "regions": {"emitter": {the same},
+/// ...}.
 nlohmann::json seed_statistics_json(const SeedStatisticsByRegion& statistics);
 
 /// Reads what seed_statistics_json made, bit for bit; other keys play no part. Throws Error(usage)

@@ -92,6 +92,8 @@ GroupSummary summarise_group(const std::vector<const Json*>& all) {
     group.times_s = values_of(rows, "time_s", "total");
     group.time_s = median(group.times_s);
     group.reconstruct_s = median(values_of(rows, "time_s", "reconstruct"));
+    if (const auto traced = values_of(rows, "time_s", "trace"); !traced.empty())
+        group.trace_s = median(traced);
     group.fallback_pixels = rows.front()->at("counts").value("fallback_pixels", std::size_t{0});
     return group;
 }

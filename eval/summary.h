@@ -30,6 +30,7 @@ struct GroupSummary {
     double time_s = 0;                          ///< total, median over seeds
     std::vector<double> times_s;                ///< total, by seed
     double reconstruct_s = 0;
+    double trace_s = 0;     ///< median over seeds; 0 where nothing was traced
     std::string against;    ///< the group of path tracing that its time is a share of
     double time_share = 0;  ///< 0 when that is not there
     double samples_ratio = 0;

@@ -235,6 +235,28 @@ TEST_CASE("an image's error is the one behind psnr_float_db", "[seed_statistics]
     }
 }
 
+// Of n images the mean relMSE is that of their mean image, and (n - 1) / n of the variance.
+TEST_CASE("the relative variance is the part of relMSE that noise makes", "[seed_statistics]") {
+    const RegionMap regions = stripes({30, 20});
+    const Images images = noisy_images(regions, 4);
+    const Image reference = reference_of({30, 20});
+    const auto found = seed_statistics(images, reference, &regions);
+    Image mean_image({30, 20});
+    double relmse = 0;
+    for (const Image& image : images) {
+        relmse += compare(image, reference).metrics->relmse / 4;
+        for (std::size_t i = 0; i < mean_image.values().size(); ++i)
+            mean_image.values()[i] += image.values()[i] / 4.0f;
+    }
+    const double of_mean = compare(mean_image, reference).metrics->relmse;
+    CHECK(of_mean < 0.9 * relmse);
+    CHECK(*found->whole.relative_variance * 0.75 == Approx(relmse - of_mean).epsilon(1e-4));
+    double by_region = 0;
+    for (const SeedStatistics& s : *found->regions)
+        by_region += static_cast<double>(s.pixels) / (30 * 20) * *s.relative_variance;
+    CHECK(*found->whole.relative_variance == close_to(by_region));
+}
+
 TEST_CASE("intervals from pseudo-values hold the truth about 19 times in 20", "[seed_statistics]") {
     const Extent size{8, 6};
     const RegionMap regions(size, Region::edge);
@@ -265,6 +287,7 @@ TEST_CASE("few seeds say less", "[seed_statistics]") {
     CHECK(with(1).mse.size() == 1);
     CHECK_FALSE(with(1).noise);
     CHECK_FALSE(with(1).bias2);
+    CHECK_FALSE(with(1).relative_variance);
     CHECK(with(1).noise_by_seed.empty());
     CHECK(with(2).noise);
     CHECK(with(2).bias2);

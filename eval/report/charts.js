@@ -107,13 +107,16 @@ const charts = (() => {
         ctx.restore();
     }
 
-    /// Plain path tracing: its level, or its curve over spp where a matrix has more than one point of it; a curve per light sampling.
+    /// How a group of path tracing samples: groups that differ in spp alone make one curve.
+    const samplingOf = (g) => report.convergence.find((c) => c.points.some((p) => p.group === g.group))?.variant ?? g.params.light_sampling;
+
+    /// Plain path tracing: its level, or its curve over spp where a matrix has more than one point of it; a curve per way of sampling.
     function drawPathLevel(chart) {
         const path = shown(chart).find((d) => d.label === "path");
         if (!path || path.data.length === 0) return;
         const curves = new Map();
         for (const p of [...path.data].sort((a, b) => a.x - b.x)) {
-            const key = p.group.params.light_sampling;
+            const key = samplingOf(p.group);
             const at = [chart.scales.x.getPixelForValue(p.x), chart.scales.y.getPixelForValue(p.y)];
             curves.set(key, [...(curves.get(key) ?? []), at]);
         }
@@ -125,7 +128,7 @@ const charts = (() => {
                 at.forEach(([x, y], i) => (i === 0 ? ctx.moveTo(x, y) : ctx.lineTo(x, y)));
             });
             const label = curves.size === 1 ? "path" : name;
-            lineLabel(chart, label, path.tone, at[at.length - 1][1]);
+            if (label.length <= 6) lineLabel(chart, label, path.tone, at[at.length - 1][1]);
         }
     }
 
@@ -314,8 +317,8 @@ const charts = (() => {
         });
     }
 
-    all(".switch button").forEach((button) => button.addEventListener("click", () => choose(button)));
-    all(".legend button").forEach((button) => button.addEventListener("click", () => toggle(button)));
+    all("#chart .switch button").forEach((button) => button.addEventListener("click", () => choose(button)));
+    all("#chart .legend button").forEach((button) => button.addEventListener("click", () => toggle(button)));
     for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", draw);
-    return { draw };
+    return { draw, logTicks, colour };
 })();

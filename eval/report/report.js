@@ -220,4 +220,5 @@
     // Pictures that were not yet scrolled to would be missing on paper.
     addEventListener("beforeprint", () => all("img[loading]").forEach((image) => { image.loading = "eager"; }));
     charts.draw();
+    convergence.draw();
 })();
