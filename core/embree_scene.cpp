@@ -158,6 +158,7 @@ void attach_spheres(RTCDevice device, RTCScene scene, std::vector<SphereData>& s
 // The packet calls of Embree by width, and the one difference between its versions 3 and 4.
 #if RTC_VERSION_MAJOR >= 4
 #define VECINO_CALL(function, valid, scene, ray) function(valid, scene, ray, &args.value)
+#define VECINO_CALL_ONE(function, scene, ray) function(scene, ray, &args.value)
 struct IntersectArguments {
     RTCIntersectArguments value;
     IntersectArguments() { rtcInitIntersectArguments(&value); }
@@ -168,6 +169,7 @@ struct OccludedArguments {
 };
 #else
 #define VECINO_CALL(function, valid, scene, ray) function(valid, scene, &args.value, ray)
+#define VECINO_CALL_ONE(function, scene, ray) function(scene, &args.value, ray)
 struct IntersectArguments {
     RTCIntersectContext value;
     IntersectArguments() { rtcInitIntersectContext(&value); }
@@ -194,6 +196,22 @@ struct Packet;
 VECINO_PACKET(4)
 VECINO_PACKET(8)
 VECINO_PACKET(16)
+
+/// One ray has no mask, and its fields are no arrays: it is a packet of one all the same.
+template <>
+struct Packet<1> {
+    using Ray = RTCRayNt<1>;
+    using RayHit = RTCRayHitNt<1>;
+    static void intersect(const int* valid, RTCScene scene, RayHit* ray) {
+        IntersectArguments args;
+        ray->hit.u[0] = ray->hit.v[0] = 0.0f;  // which a miss or an inactive ray leaves alone
+        if (*valid != 0) VECINO_CALL_ONE(rtcIntersect1, scene, reinterpret_cast<RTCRayHit*>(ray));
+    }
+    static void occluded(const int* valid, RTCScene scene, Ray* ray) {
+        OccludedArguments args;
+        if (*valid != 0) VECINO_CALL_ONE(rtcOccluded1, scene, reinterpret_cast<RTCRay*>(ray));
+    }
+};
 
 template <int W, class Ray>
 void load_rays(const RayPacket<W>& rays, Ray& out) {
@@ -270,9 +288,11 @@ void EmbreeScene::occluded(const RayPacket<W>& rays, std::int32_t* blocked) cons
     for (int i = 0; i < W; ++i) blocked[i] = packet.tfar[i] < 0.0f ? rays.active[i] : 0;
 }
 
+template void EmbreeScene::intersect<1>(const RayPacket<1>&, HitPacket<1>&) const;
 template void EmbreeScene::intersect<4>(const RayPacket<4>&, HitPacket<4>&) const;
 template void EmbreeScene::intersect<8>(const RayPacket<8>&, HitPacket<8>&) const;
 template void EmbreeScene::intersect<16>(const RayPacket<16>&, HitPacket<16>&) const;
+template void EmbreeScene::occluded<1>(const RayPacket<1>&, std::int32_t*) const;
 template void EmbreeScene::occluded<4>(const RayPacket<4>&, std::int32_t*) const;
 template void EmbreeScene::occluded<8>(const RayPacket<8>&, std::int32_t*) const;
 template void EmbreeScene::occluded<16>(const RayPacket<16>&, std::int32_t*) const;

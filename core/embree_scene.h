@@ -47,7 +47,7 @@ class EmbreeScene {
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    /// Defined for W = 4, 8, 16.
+    /// Defined for W = 1, 4, 8, 16.
     template <int W>
     void intersect(const RayPacket<W>& rays, HitPacket<W>& hits) const;
 

@@ -6,6 +6,7 @@
 #include "core/embree_scene.h"
 #include "core/lanes.h"
 #include "core/light_lanes.h"
+#include "core/packet_log.h"
 #include "core/random_lanes.h"
 #include "core/trace_task.h"
 
@@ -78,6 +79,7 @@ Ray Tracer::primary_ray(Float pixel_x, Float pixel_y) const {
 
 Surface Tracer::trace(const Ray& ray, Mask active) {
     const RayPacket<W> packet = pack(ray, splat(__builtin_inff()), active);
+    if (task_.packet_log) log_packet(*task_.packet_log, RayQuery::nearest_hit, packet);
     HitPacket<W> hits;
     task_.embree->intersect(packet, hits);
     rays_ += static_cast<std::uint64_t>(count(active));
@@ -86,6 +88,7 @@ Surface Tracer::trace(const Ray& ray, Mask active) {
 
 Mask Tracer::occluded(const Ray& ray, Float distance, Mask active) {
     const RayPacket<W> packet = pack(ray, distance, active);
+    if (task_.packet_log) log_packet(*task_.packet_log, RayQuery::any_hit, packet);
     alignas(64) std::int32_t blocked[W];
     task_.embree->occluded(packet, blocked);
     rays_ += static_cast<std::uint64_t>(count(active));

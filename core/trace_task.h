@@ -11,6 +11,7 @@
 namespace vecino {
 
 class EmbreeScene;
+class PacketLog;
 
 /// A triangle or a sphere, as shading sees it. One cache line. Triangles come first, then spheres.
 struct alignas(64) SurfaceRecord {
@@ -73,6 +74,8 @@ struct TraceTask {
     /// dB: each stratifies a quarter.
     std::uint32_t streams;
     std::uint32_t seed;
+
+    PacketLog* packet_log;  ///< null in renders; a benchmark keeps every packet here
 };
 
 constexpr int kBlockSamples = 64;  ///< samples summed together; see accumulate.h
