@@ -201,7 +201,11 @@ VECINO_PACKET(16)
 template <>
 struct Packet<1> {
     using Ray = RTCRayNt<1>;
-    using RayHit = RTCRayHitNt<1>;
+    struct alignas(16) RayHit {
+        RTCRayNt<1> ray;
+        RTCHitNt<1> hit;
+    };
+    static_assert(sizeof(RayHit) == sizeof(RTCRayHit) && sizeof(Ray) == sizeof(RTCRay));
     static void intersect(const int* valid, RTCScene scene, RayHit* ray) {
         IntersectArguments args;
         ray->hit.u[0] = ray->hit.v[0] = 0.0f;  // which a miss or an inactive ray leaves alone

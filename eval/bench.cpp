@@ -39,7 +39,7 @@ class TraceUnits {
         RenderSettings one = settings;
         one.threads = 1;
         one_thread_ = add_render(robin, scene.scene, one);
-        trace_ = robin.add([this] { return seconds_per_run([this] { pixels_.trace(); }); });
+        trace_ = robin.add([this] { return thread_seconds_per_run([this] { pixels_.trace(); }); });
         replay_ = add_replay(robin, pixels_.packets());
         for (const RayKind kind : {RayKind::primary, RayKind::shadow, RayKind::bounce}) {
             Kind& replayed = kinds_[static_cast<std::size_t>(kind)];
@@ -58,7 +58,8 @@ class TraceUnits {
             static_cast<double>(settings_.size.area()) * static_cast<double>(settings_.spp);
         row.samples_per_s = robin.rate(all_threads_, samples);
         row.thread_speedup = robin.ratio(one_thread_, all_threads_).median;
-        row.scalar_speedup = robin.ratio(scalar.all_threads_, all_threads_).median;
+        row.samples_per_s_one_thread = robin.rate(trace_, static_cast<double>(pixels_.samples()));
+        row.scalar_speedup = robin.ratio(scalar.trace_, trace_).median;
         row.primary_rays_per_s = rays_per_s(robin, RayKind::primary);
         row.shadow_rays_per_s = rays_per_s(robin, RayKind::shadow);
         row.bounce_rays_per_s = rays_per_s(robin, RayKind::bounce);
@@ -76,7 +77,7 @@ class TraceUnits {
 
     std::size_t add_replay(RoundRobin& robin, const PacketLog& packets) {
         return robin.add([this, &packets] {
-            return seconds_per_run([&] { packets.replay(pixels_.embree()); });
+            return thread_seconds_per_run([&] { packets.replay(pixels_.embree()); });
         });
     }
 
@@ -182,22 +183,23 @@ std::vector<SchemeRow> bench_schemes(const BenchScene& scene, const BenchSetting
         low.reduction = kReductions[i];
         frames[i] = render(scene.scene, low).frame;
         for (const NamedScheme& named : schemes) {
-            robin.add([&, i] {
-                return seconds_per_run([&] {
-                    reconstruct(frames[i], *named.scheme,
-                                {kSize, named.parameters, settings.threads});
-                });
-            });
+            const auto rebuild = [&, i](int threads) {
+                reconstruct(frames[i], *named.scheme, {kSize, named.parameters, threads});
+            };
+            robin.add([=] { return seconds_per_run([&] { rebuild(settings.threads); }); });
+            robin.add([=] { return thread_seconds_per_run([&] { rebuild(1); }); });
         }
     }
     robin.run(settings.repeats, progress);
     std::vector<SchemeRow> rows;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         for (std::size_t k = 0; k < schemes.size(); ++k) {
-            const std::size_t unit = i * schemes.size() + k;
-            rows.push_back({schemes[k].name, kReductions[i], robin.time(unit),
-                            robin.ratio(unit, i * schemes.size()).median,
-                            robin.ratio(unit, k).median});
+            // Every scheme has two units: all threads, then one.
+            const std::size_t unit = 2 * (i * schemes.size() + k);
+            const std::size_t nearest = 2 * i * schemes.size() + 1;
+            rows.push_back({schemes[k].name, kReductions[i], robin.time(unit), robin.time(unit + 1),
+                            robin.ratio(unit + 1, nearest).median,
+                            robin.ratio(unit + 1, 2 * k + 1).median});
         }
     }
     return rows;
@@ -209,11 +211,14 @@ std::vector<PlanesRow> bench_planes(const std::vector<BenchScene>& scenes,
     RenderSettings render = render_settings(settings);
     // With Sobol samples the variance plane is made from other samples: no cost of planes.
     render.sampler = Sampler::independent;
+    render.threads = 1;
     const std::vector<NamedPlanes> planes = planes_to_time();
     for (const BenchScene& scene : scenes) {
         for (const NamedPlanes& named : planes) {
             render.planes = named.planes;
-            add_render(robin, scene.scene, render);
+            robin.add([&scene, render] {
+                return thread_seconds_per_run([&] { vecino::render(scene.scene, render); });
+            });
         }
     }
     robin.run(settings.repeats, progress);

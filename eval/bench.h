@@ -47,19 +47,25 @@ struct TraceRow {
     std::string light_sampling;
     int simd_width = 0;
     Measured samples_per_s;     ///< of a whole render on all threads
-    double thread_speedup = 0;  ///< all threads' samples/s over one thread's
-    double scalar_speedup = 0;  ///< samples/s over those of width 1
-    /// Rays/s of one thread through Embree alone, by kind; none where the paths have no such ray.
+    double thread_speedup = 0;  ///< over a render on one thread
+    /// @name One thread, by the time that it ran
+    /// Of 128 pixels; by the thread's own clock, so that other programs hardly matter.
+    /// @{
+    Measured samples_per_s_one_thread;
+    double scalar_speedup = 0;  ///< over width 1
+    /// Rays/s through Embree alone, by kind; none where the paths have no such ray.
     std::optional<double> primary_rays_per_s, shadow_rays_per_s, bounce_rays_per_s;
     double rays_per_sample = 0;
-    Measured embree_share;  ///< Embree's time over that of tracing the same pixels, one thread
+    Measured embree_share;  ///< Embree's time over that of tracing the same pixels
+    /// @}
 };
 
 /// A scheme that rebuilds 512x512 pixels, window 7.
 struct SchemeRow {
     std::string scheme;  ///< with the weighting, where there is a choice
     int reduction = 0;
-    Measured time_s;
+    Measured time_s;                ///< on all threads
+    Measured time_s_one_thread;     ///< by the thread's own clock, as what follows
     double time_over_nearest = 0;   ///< of the same reduction
     double time_over_factor_2 = 0;  ///< of the same scheme at reduction 2
 };
@@ -68,7 +74,7 @@ struct SchemeRow {
 struct PlanesRow {
     std::string scene;
     std::string planes;
-    Measured time_s;
+    Measured time_s;                ///< of the render on one thread, by the thread's own clock
     double time_over_radiance = 0;  ///< alone
 };
 

@@ -35,13 +35,15 @@ constexpr Column<TraceRow> kTraceColumns[] = {
     {"simd_width", "width", 1, 0, [](const TraceRow& r) { return nlohmann::json(r.simd_width); }, "samples side by side; 1 is the scalar path"},
     {"samples_per_s", "Msamples/s", kMega, 2, [](const TraceRow& r) { return nlohmann::json(r.samples_per_s.median); }, "paths per second of a render on all threads"},
     {"samples_per_s_spread", "+-%", kPercent, 1, [](const TraceRow& r) { return nlohmann::json(r.samples_per_s.spread); }, "half its range over the rounds, over its median"},
-    {"scalar_speedup", "x scalar", 1, 2, [](const TraceRow& r) { return nlohmann::json(r.scalar_speedup); }, "its samples/s over those of width 1"},
     {"thread_speedup", "x 1 thread", 1, 2, [](const TraceRow& r) { return nlohmann::json(r.thread_speedup); }, "all threads' samples/s over one thread's"},
-    {"primary_rays_per_s", "primary Mrays/s", kMega, 1, [](const TraceRow& r) { return or_null(r.primary_rays_per_s); }, "rays of one thread through Embree alone: from the camera"},
+    {"samples_per_s_one_thread", "1 thread", kMega, 2, [](const TraceRow& r) { return nlohmann::json(r.samples_per_s_one_thread.median); }, "of 128 pixels, by the thread's own clock, as all that follows"},
+    {"samples_per_s_one_thread_spread", "+-%", kPercent, 1, [](const TraceRow& r) { return nlohmann::json(r.samples_per_s_one_thread.spread); }, "half its range over the rounds, over its median"},
+    {"scalar_speedup", "x scalar", 1, 2, [](const TraceRow& r) { return nlohmann::json(r.scalar_speedup); }, "one thread's samples/s over those of width 1"},
+    {"primary_rays_per_s", "primary Mrays/s", kMega, 1, [](const TraceRow& r) { return or_null(r.primary_rays_per_s); }, "rays through Embree alone: from the camera"},
     {"shadow_rays_per_s", "shadow", kMega, 1, [](const TraceRow& r) { return or_null(r.shadow_rays_per_s); }, "the same to lights; null where there are none"},
     {"bounce_rays_per_s", "bounce", kMega, 1, [](const TraceRow& r) { return or_null(r.bounce_rays_per_s); }, "the same for all others"},
     {"rays_per_sample", "rays/sample", 1, 2, [](const TraceRow& r) { return nlohmann::json(r.rays_per_sample); }, "of all kinds"},
-    {"embree_share", "Embree %", kPercent, 1, [](const TraceRow& r) { return nlohmann::json(r.embree_share.median); }, "time of the packets alone over that of tracing the same pixels, one thread"},
+    {"embree_share", "Embree %", kPercent, 1, [](const TraceRow& r) { return nlohmann::json(r.embree_share.median); }, "time of the packets alone over that of tracing the same pixels"},
     {"embree_share_spread", "+-%", kPercent, 1, [](const TraceRow& r) { return nlohmann::json(r.embree_share.spread); }, "half its range over the rounds, over its median"},
 };
 
@@ -50,6 +52,8 @@ constexpr Column<SchemeRow> kSchemeColumns[] = {
     {"reduction", "factor", 1, 0, [](const SchemeRow& r) { return nlohmann::json(r.reduction); }, "from 512 / this"},
     {"time_s", "ms", kMilli, 3, [](const SchemeRow& r) { return nlohmann::json(r.time_s.median); }, "for the image, all threads"},
     {"time_s_spread", "+-%", kPercent, 1, [](const SchemeRow& r) { return nlohmann::json(r.time_s.spread); }, "half its range over the rounds, over its median"},
+    {"time_s_one_thread", "1 thread", kMilli, 3, [](const SchemeRow& r) { return nlohmann::json(r.time_s_one_thread.median); }, "by the thread's own clock, as all that follows"},
+    {"time_s_one_thread_spread", "+-%", kPercent, 1, [](const SchemeRow& r) { return nlohmann::json(r.time_s_one_thread.spread); }, "half its range over the rounds, over its median"},
     {"time_over_nearest", "x nearest", 1, 2, [](const SchemeRow& r) { return nlohmann::json(r.time_over_nearest); }, "at the same factor"},
     {"time_over_factor_2", "x factor 2", 1, 2, [](const SchemeRow& r) { return nlohmann::json(r.time_over_factor_2); }, "of the same scheme"},
 };
@@ -57,7 +61,7 @@ constexpr Column<SchemeRow> kSchemeColumns[] = {
 constexpr Column<PlanesRow> kPlanesColumns[] = {
     {"scene", "scene", 1, 0, [](const PlanesRow& r) { return nlohmann::json(r.scene); }, "which was traced, with independent samples"},
     {"planes", "planes", 1, 0, [](const PlanesRow& r) { return nlohmann::json(r.planes); }, "that were made"},
-    {"time_s", "ms", kMilli, 2, [](const PlanesRow& r) { return nlohmann::json(r.time_s.median); }, "of tracing, all threads"},
+    {"time_s", "ms", kMilli, 2, [](const PlanesRow& r) { return nlohmann::json(r.time_s.median); }, "of the render, one thread, by the thread's own clock"},
     {"time_s_spread", "+-%", kPercent, 1, [](const PlanesRow& r) { return nlohmann::json(r.time_s.spread); }, "half its range over the rounds, over its median"},
     {"time_over_radiance", "x radiance", 1, 3, [](const PlanesRow& r) { return nlohmann::json(r.time_over_radiance); }, "over that of radiance alone"},
 };
@@ -119,7 +123,7 @@ std::string keys_text(std::string_view name, std::span<const Column<Row>> column
     std::string text = std::string(name) + ":\n";
     for (const Column<Row>& column : columns) {
         std::string line = "  " + std::string(column.key);
-        line.resize(std::max<std::size_t>(line.size() + 1, 25), ' ');
+        line.resize(std::max<std::size_t>(line.size() + 1, 35), ' ');
         text += line + std::string(column.summary) + "\n";
     }
     return text;

@@ -15,17 +15,26 @@ Measured measured(const std::vector<double>& values) {
     return {middle, 0.5 * (most - least) / middle};
 }
 
-}  // namespace
-
-double seconds_per_run(const std::function<void()>& work) {
+template <class Watch>
+double time_runs(const std::function<void()>& work) {
     constexpr double kLeast_s = 0.01;
-    const Stopwatch watch;
+    const Watch watch;
     int runs = 0;
     do {
         work();
         ++runs;
     } while (watch.seconds() < kLeast_s);
     return watch.seconds() / runs;
+}
+
+}  // namespace
+
+double seconds_per_run(const std::function<void()>& work) {
+    return time_runs<Stopwatch>(work);
+}
+
+double thread_seconds_per_run(const std::function<void()>& work) {
+    return time_runs<ThreadStopwatch>(work);
 }
 
 std::size_t RoundRobin::add(std::function<double()> measure) {

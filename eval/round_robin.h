@@ -16,6 +16,10 @@ namespace vecino {
 /// what a call costs do not matter.
 double seconds_per_run(const std::function<void()>& work);
 
+/// The same of the calling thread's own time, for work that starts no other: a busy machine hardly
+/// changes it.
+double thread_seconds_per_run(const std::function<void()>& work);
+
 class RoundRobin {
   public:
     /// What to time; measure returns seconds. Returns its number.
