@@ -145,6 +145,7 @@ void attach_shapes(RTCDevice device, RTCScene scene, std::vector<Shape>& shapes,
 // The packet calls of Embree by width, and the one difference between its versions 3 and 4.
 #if RTC_VERSION_MAJOR >= 4
 #define VECINO_CALL(function, valid, scene, ray) function(valid, scene, ray, &args.value)
+#define VECINO_CALL_ONE(function, scene, ray) function(scene, ray, &args.value)
 struct IntersectArguments {
     RTCIntersectArguments value;
     IntersectArguments() { rtcInitIntersectArguments(&value); }
@@ -155,6 +156,7 @@ struct OccludedArguments {
 };
 #else
 #define VECINO_CALL(function, valid, scene, ray) function(valid, scene, &args.value, ray)
+#define VECINO_CALL_ONE(function, scene, ray) function(scene, &args.value, ray)
 struct IntersectArguments {
     RTCIntersectContext value;
     IntersectArguments() { rtcInitIntersectContext(&value); }
@@ -181,6 +183,25 @@ struct Packet;
 VECINO_PACKET(4)
 VECINO_PACKET(8)
 VECINO_PACKET(16)
+
+/// One ray has no mask, and its fields are no arrays: it is a packet of one all the same.
+template <>
+struct Packet<1> {
+    using Ray = RTCRayNt<1>;
+    struct alignas(16) RayHit {
+        RTCRayNt<1> ray;
+        RTCHitNt<1> hit;
+    };
+    static_assert(sizeof(RayHit) == sizeof(RTCRayHit) && sizeof(Ray) == sizeof(RTCRay));
+    static void intersect(const int* valid, RTCScene scene, RayHit* ray) {
+        IntersectArguments args;
+        if (*valid != 0) VECINO_CALL_ONE(rtcIntersect1, scene, reinterpret_cast<RTCRayHit*>(ray));
+    }
+    static void occluded(const int* valid, RTCScene scene, Ray* ray) {
+        OccludedArguments args;
+        if (*valid != 0) VECINO_CALL_ONE(rtcOccluded1, scene, reinterpret_cast<RTCRay*>(ray));
+    }
+};
 
 template <int W>
 constexpr bool kSameLayout =
@@ -252,6 +273,7 @@ void EmbreeScene::occluded(const std::int32_t (&active)[W], RayPacket<W>& rays) 
 #define VECINO_INSTANTIATE(W)                                                               \
     template void EmbreeScene::intersect<W>(const std::int32_t(&)[W], HitPacket<W>&) const; \
     template void EmbreeScene::occluded<W>(const std::int32_t(&)[W], RayPacket<W>&) const;
+VECINO_INSTANTIATE(1)
 VECINO_INSTANTIATE(4)
 VECINO_INSTANTIATE(8)
 VECINO_INSTANTIATE(16)

@@ -11,7 +11,7 @@ namespace vecino {
 
 /// Rays side by side, laid out as Embree's own packets are, so that none is copied.
 template <int W>
-struct alignas(64) RayPacket {
+struct alignas(W == 1 ? 16 : 64) RayPacket {
     float origin[3][W];
     float t_near[W];
     float direction[3][W];  ///< of any length but 0; t counts in lengths of it
@@ -23,7 +23,7 @@ struct alignas(64) RayPacket {
 
 /// Rays, and what they hit: geometry is an EmbreeKind, or kNoGeometry, which it must be before.
 template <int W>
-struct alignas(64) HitPacket {
+struct alignas(W == 1 ? 16 : 64) HitPacket {
     RayPacket<W> ray;  ///< t_far: of the hit
     float normal[3][W];
     float u[W], v[W];  ///< barycentric, triangles only
@@ -47,7 +47,8 @@ class EmbreeScene {
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    /// Rays whose active is -1; those of 0 are left alone. Defined for W = 4, 8, 16.
+    /// Rays whose active is -1; those of 0 are left alone. Defined for W = 1, 4,
+    /// 8, 16.
     template <int W>
     void intersect(const std::int32_t (&active)[W], HitPacket<W>& hits) const;
 

@@ -8,11 +8,10 @@
 
 #include "core/accumulate.h"
 #include "core/error.h"
-#include "core/flat_scene.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/render_task.h"
 #include "core/timing.h"
-#include "core/trace_task.h"
 
 namespace vecino {
 namespace {
@@ -20,34 +19,6 @@ namespace {
 // Pixels handed to a thread at a time: few enough to balance small frames, many enough to be cheap
 // at 1 spp.
 constexpr std::size_t kPixelsPerBlock = 16;
-
-void require(bool holds, const std::string& name, long long found, const std::string& allowed) {
-    if (holds) return;
-    throw Error(ExitCode::usage,
-                name + ": found " + std::to_string(found) + ", allowed: " + allowed);
-}
-
-void check(const RenderSettings& s) {
-    constexpr int kMaxSide = 65536;
-    require(s.size.width >= 1 && s.size.width <= kMaxSide, "size: width", s.size.width,
-            "1 to 65536");
-    require(s.size.height >= 1 && s.size.height <= kMaxSide, "size: height", s.size.height,
-            "1 to 65536");
-    require(s.reduction >= 1, "reduction", s.reduction, "1 or more");
-    require(s.spp >= 1, "spp", s.spp, "1 or more");
-    require(s.max_depth >= 0 && s.max_depth <= 1000, "max_depth", s.max_depth, "0 to 1000");
-    require(s.threads >= 0 && s.threads <= 1024, "threads", s.threads, "1 to 1024");
-}
-
-const TraceKernel& kernel_for(int width) {
-    const std::vector<int> widths = simd_widths();
-    const TraceKernel* const kernel = find_trace_kernel(width == 0 ? widths.front() : width);
-    if (kernel != nullptr) return *kernel;
-    std::string allowed;
-    for (const int w : widths) allowed += (allowed.empty() ? "" : ", ") + std::to_string(w);
-    require(false, "simd_width", width, allowed + " (on this machine)");
-    return *kernel;
-}
 
 /// Allocates the planes that were asked for.
 Frame make_frame(Extent size, const RenderSettings& settings) {
@@ -213,14 +184,14 @@ void fill_pattern(Frame& frame) {
 
 std::vector<int> simd_widths() {
     std::vector<int> widths;
-    for (const int width : {16, 8, 4}) {
+    for (const int width : {16, 8, 4, 1}) {
         if (find_trace_kernel(width) != nullptr) widths.push_back(width);
     }
     return widths;
 }
 
 Render render(const Scene& scene, const RenderSettings& settings, const Progress& progress) {
-    check(settings);
+    check_settings(settings);
     const TraceKernel& kernel = kernel_for(settings.simd_width);
     const Extent size = reduced(settings.size, settings.reduction);
     Planes planes = settings.planes;
@@ -235,18 +206,8 @@ Render render(const Scene& scene, const RenderSettings& settings, const Progress
     }
     const Stopwatch scene_watch;
     const FlatScene flat = flatten(scene);
-    const float aspect =
-        static_cast<float>(settings.size.width) / static_cast<float>(settings.size.height);
-    TraceTask task = trace_task(scene, flat, aspect);
-    task.width = size.width;
-    task.height = size.height;
-    task.max_depth = settings.max_depth;
-    task.next_event_estimation = settings.light_sampling == LightSampling::nee;
-    task.by_solid_angle = settings.light_point == LightPoint::solid_angle;
-    task.control_variate = settings.control_variate == ControlVariate::irradiance;
-    task.sobol = settings.sampler == Sampler::sobol;
+    TraceTask task = render_task(scene, flat, settings);
     task.streams = result.frame.variance.empty() ? 1 : kStreams;
-    task.seed = settings.seed;
     result.statistics.scene_s = scene_watch.seconds();
 
     const Stopwatch trace_watch;

@@ -61,7 +61,7 @@ struct RenderSettings {
     std::uint32_t seed = 1;                       ///< any; renders of other seeds differ in noise
     Planes planes = Planes::all();                ///< beside radiance, which is always made
     int threads = 0;                              ///< 1 to 1024; 0: all
-    int simd_width = 0;  ///< samples traced side by side: 4, 8 or 16; 0: the machine's widest
+    int simd_width = 0;  ///< samples traced side by side: 1, 4, 8 or 16; 0: the machine's widest
 };
 
 /// What a render took.

@@ -6,6 +6,7 @@
 
 #include "core/embree_scene.h"
 #include "core/lanes.h"
+#include "core/packet_log.h"
 #include "core/trace_task.h"
 
 namespace vecino {
@@ -95,6 +96,7 @@ inline Surface Tracer::trace(const Ray& ray, Mask active) {
     store(hits.instance, splat(kNoGeometry));
     alignas(64) std::int32_t lanes[W];
     store(lanes, active);
+    if (task_.packet_log) log_packet(*task_.packet_log, RayQuery::nearest_hit, lanes, hits.ray);
     task_.embree->intersect(lanes, hits);
     rays_ += static_cast<std::uint64_t>(count(active));
     return shade(ray, hits, active);
@@ -105,6 +107,7 @@ inline Mask Tracer::occluded(const Ray& ray, Float t_far, Mask active) {
     pack(ray, t_far, rays);
     alignas(64) std::int32_t lanes[W];
     store(lanes, active);
+    if (task_.packet_log) log_packet(*task_.packet_log, RayQuery::any_hit, lanes, rays);
     task_.embree->occluded(lanes, rays);
     rays_ += static_cast<std::uint64_t>(count(active));
     return active & (load<Float>(rays.t_far) < 0.0f);

@@ -5,6 +5,7 @@
 
 namespace vecino {
 
+extern const TraceKernel kTraceKernel1;
 extern const TraceKernel kTraceKernel4;
 #ifdef VECINO_WIDE_KERNELS
 extern const TraceKernel kTraceKernel8;
@@ -12,6 +13,7 @@ extern const TraceKernel kTraceKernel16;
 #endif
 
 const TraceKernel* find_trace_kernel(int width) {
+    if (width == 1) return &kTraceKernel1;
     if (width == 4) return &kTraceKernel4;
 #ifdef VECINO_WIDE_KERNELS
     __builtin_cpu_init();

@@ -11,6 +11,7 @@
 namespace vecino {
 
 class EmbreeScene;
+class PacketLog;
 
 /// What shading knows of a surface: a planar quad, a triangle or a sphere.
 enum SurfaceField {
@@ -82,6 +83,8 @@ struct TraceTask {
     /// dB: each stratifies a quarter.
     std::uint32_t streams;
     std::uint32_t seed;
+
+    PacketLog* packet_log;  ///< null in renders; a benchmark keeps every packet here
 };
 
 constexpr int kBlockSamples = 64;  ///< samples summed together; see accumulate.h

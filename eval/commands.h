@@ -26,6 +26,7 @@ void add_run_command(CLI::App& app, Action& chosen);
 void add_report_command(CLI::App& app, Action& chosen);
 void add_list_command(CLI::App& app, Action& chosen);
 void add_schema_command(CLI::App& app, Action& chosen);
+void add_bench_command(CLI::App& app, Action& chosen);
 
 /// The commit that the program was built from: made by commit.cmake; empty where it is unknown.
 extern const std::string_view kCommit;

@@ -63,6 +63,7 @@ int run_program(int argc, const char* const* argv) {
     add_report_command(app, chosen);
     add_list_command(app, chosen);
     add_schema_command(app, chosen);
+    add_bench_command(app, chosen);
     app.footer(
         "Exit codes: 0 pass; 2 a quality limit failed or cells of a run failed; 3 sizes, channels "
         "or planes do not fit;\n"

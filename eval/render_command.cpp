@@ -129,8 +129,8 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->check(not_empty());
     command->add_option("--threads", arguments->threads, "default: all")
         ->check(CLI::Range(1, 1024));
-    command->add_option("--simd-width", arguments->simd_width, "samples side by side: 4, 8, 16")
-        ->check(CLI::IsMember({4, 8, 16}));
+    command->add_option("--simd-width", arguments->simd_width, "samples side by side: 1, 4, 8, 16")
+        ->check(CLI::IsMember({1, 4, 8, 16}));
     command->add_flag("--json", arguments->json, "print times and counts as JSON");
     command->callback(
         [arguments, &chosen] { chosen = [arguments] { return run_render(*arguments); }; });

@@ -19,6 +19,10 @@ constexpr double kYes = std::bit_cast<double>(~std::uint64_t{0});
 SumWindows kernel_of_this_machine() {
 #ifdef VECINO_WIDE_KERNELS
     __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl")) {
+        return sum_windows_avx512;
+    }
     if (__builtin_cpu_supports("avx2")) return sum_windows_avx2;
 #endif
     return sum_windows_baseline;

@@ -23,7 +23,7 @@ enum WindowPlane : std::int32_t {
     kNormalPlanes = 8,    ///< x, y, z
 };
 
-constexpr std::int32_t kMostLanes = 4;  ///< pixels that a kernel takes at once
+constexpr std::int32_t kMostLanes = 8;  ///< pixels that a kernel takes at once
 
 /// One row of pixels and what its windows reach. Left of each plane row there are `reach` values
 /// that are not present, right of it reach + kMostLanes, so that no load needs a test.
@@ -50,6 +50,7 @@ struct WindowRow {
 
 using SumWindows = void (*)(const WindowRow&);
 void sum_windows_baseline(const WindowRow& row);
-void sum_windows_avx2(const WindowRow& row);  // on x86-64 only
+void sum_windows_avx2(const WindowRow& row);    // on x86-64 only
+void sum_windows_avx512(const WindowRow& row);  // likewise
 
 }  // namespace vecino

@@ -2,9 +2,7 @@
 //
 // The schemes by hand: golden values, the fallback and miss rules, the tables and their errors.
 #include <algorithm>
-#include <cstdio>
 
-#include "core/timing.h"
 #include "tests/catch.h"
 #include "tests/error_of.h"
 #include "tests/scheme_frames.h"
@@ -342,22 +340,4 @@ TEST_CASE("sizes and windows that make no sense are errors", "[schemes]") {
     CHECK(code(low, {8, 8}, 2) == ExitCode::usage);
     CHECK(code(low, {8, 8}, 0) == ExitCode::usage);
     CHECK(code(low, {8, 8}, -1) == ExitCode::usage);
-}
-
-TEST_CASE("how long the schemes take", "[.][benchmark]") {
-    const Frame low = random_frame({256, 256}, FrameContent::benign);
-    for (const Scheme& scheme : all_schemes()) {
-        for (const SchemeParameters& parameters : parameters_of(scheme, 7)) {
-            std::vector<double> seconds;
-            for (int i = 0; i < 21; ++i) {
-                const Stopwatch watch;
-                reconstruct(low, scheme, {{512, 512}, parameters, 0});
-                seconds.push_back(watch.seconds());
-            }
-            const double least = *std::ranges::min_element(seconds);
-            std::printf("%-56s median %7.2f ms, least %6.2f ms, %7.1f Mpixel/s\n",
-                        cell_name(scheme, parameters).c_str(), 1.0e3 * median(seconds),
-                        1.0e3 * least, 512.0 * 512.0 / least / 1.0e6);
-        }
-    }
 }

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render_task.h"
+
+#include <string>
+
+#include "core/error.h"
+
+namespace vecino {
+namespace {
+
+void require(bool holds, const std::string& name, long long found, const std::string& allowed) {
+    if (holds) return;
+    throw Error(ExitCode::usage,
+                name + ": found " + std::to_string(found) + ", allowed: " + allowed);
+}
+
+}  // namespace
+
+void check_settings(const RenderSettings& s) {
+    constexpr int kMaxSide = 65536;
+    require(s.size.width >= 1 && s.size.width <= kMaxSide, "size: width", s.size.width,
+            "1 to 65536");
+    require(s.size.height >= 1 && s.size.height <= kMaxSide, "size: height", s.size.height,
+            "1 to 65536");
+    require(s.reduction >= 1, "reduction", s.reduction, "1 or more");
+    require(s.spp >= 1, "spp", s.spp, "1 or more");
+    require(s.max_depth >= 0 && s.max_depth <= 1000, "max_depth", s.max_depth, "0 to 1000");
+    require(s.threads >= 0 && s.threads <= 1024, "threads", s.threads, "1 to 1024");
+}
+
+const TraceKernel& kernel_for(int simd_width) {
+    const std::vector<int> widths = simd_widths();
+    const TraceKernel* const kernel =
+        find_trace_kernel(simd_width == 0 ? widths.front() : simd_width);
+    if (kernel != nullptr) return *kernel;
+    std::string allowed;
+    for (const int w : widths) allowed += (allowed.empty() ? "" : ", ") + std::to_string(w);
+    require(false, "simd_width", simd_width, allowed + " (on this machine)");
+    return *kernel;
+}
+
+TraceTask render_task(const Scene& scene, const FlatScene& flat, const RenderSettings& settings) {
+    const float aspect =
+        static_cast<float>(settings.size.width) / static_cast<float>(settings.size.height);
+    const Extent size = reduced(settings.size, settings.reduction);
+    TraceTask task = trace_task(scene, flat, aspect);
+    task.width = size.width;
+    task.height = size.height;
+    task.max_depth = settings.max_depth;
+    task.next_event_estimation = settings.light_sampling == LightSampling::nee;
+    task.by_solid_angle = settings.light_point == LightPoint::solid_angle;
+    task.control_variate = settings.control_variate == ControlVariate::irradiance;
+    task.sobol = settings.sampler == Sampler::sobol;
+    task.streams = 1;
+    task.seed = settings.seed;
+    return task;
+}
+
+}  // namespace vecino
