@@ -1,161 +1,257 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/accumulate.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vecino {
 namespace {
 
 constexpr int kLanes = 16;
-using PartSums = std::array<float, kStreams>;
+using StreamSums = std::array<float, kStreams>;
 
 // Sample i goes to stream i % kStreams; 16 partial sums keep the adds independent of each other.
-PartSums sum_streams(const float* values) {
+StreamSums sum_streams(const float* values) {
     std::array<float, kLanes> lanes{};
     for (int i = 0; i < kBlockSamples; i += kLanes) {
         for (int k = 0; k < kLanes; ++k) lanes[static_cast<std::size_t>(k)] += values[i + k];
     }
-    PartSums sums{};
+    StreamSums sums{};
     for (std::size_t s = 0; s < kStreams; ++s) {
         sums[s] = (lanes[s] + lanes[s + 4]) + (lanes[s + 8] + lanes[s + 12]);
     }
     return sums;
 }
 
-float* part_values(SampleBlock& block, int part) {
+float* part_values(SampleBlock& block, std::size_t part) {
     float(*const planes[])[kBlockSamples] = {block.emission, block.direct, block.indirect};
     return planes[part / 3][part % 3];
 }
 
-bool finite_sample(SampleBlock& block, int i) {
+float radiance(const SampleBlock& block, std::size_t channel, std::size_t i) {
+    return block.emission[channel][i] + block.direct[channel][i] + block.indirect[channel][i];
+}
+
+bool finite_sample(SampleBlock& block, std::size_t i) {
     float sum = 0;
-    for (int part = 0; part < 9; ++part) sum += part_values(block, part)[i];
+    for (std::size_t part = 0; part < 9; ++part) sum += part_values(block, part)[i];
+    for (std::size_t channel = 0; channel < 3; ++channel) sum += radiance(block, channel, i);
     return std::isfinite(sum);
 }
 
-void clear_sample(SampleBlock& block, int i) {
-    for (int part = 0; part < 9; ++part) part_values(block, part)[i] = 0.0f;
+void clear_sample(SampleBlock& block, std::size_t i) {
+    for (std::size_t part = 0; part < 9; ++part) part_values(block, part)[i] = 0.0f;
 }
 
 }  // namespace
 
+// ---------------------------------------------------------------- from samples to sums
+
+void PixelAccumulator::clear() {
+    for (ExactSum& sum : parts_) sum.clear();
+    for (ExactSum& sum : squares_) sum.clear();
+    for (auto& stream : streams_) {
+        for (ExactSum& sum : stream) sum.clear();
+    }
+    counts_ = {};
+    dropped_ = 0;
+    freedom_ = 0;
+}
+
 void PixelAccumulator::add(SampleBlock& block, int count) {
+    const std::uint64_t before = samples();
     for (std::size_t s = 0; s < kStreams; ++s) {
         counts_[s] +=
             static_cast<std::uint64_t>((count + kStreams - 1 - static_cast<int>(s)) / kStreams);
     }
-    std::array<PartSums, kParts> sums{};
+    std::array<StreamSums, kParts> streams;
+    std::array<float, kParts> sums;
     float total = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
-        sums[part] = sum_streams(part_values(block, static_cast<int>(part)));
-        for (const float sum : sums[part]) total += sum;
+        const StreamSums& s = streams[part] = sum_streams(part_values(block, part));
+        sums[part] = (s[0] + s[1]) + (s[2] + s[3]);
+        total += sums[part];
     }
-    if (std::isfinite(total)) {
-        for (std::size_t part = 0; part < kParts; ++part) {
-            for (std::size_t s = 0; s < kStreams; ++s)
-                sums_[part][s] += static_cast<double>(sums[part][s]);
+    const bool by_stream = variance_of_ == VarianceOf::streams;
+    std::array<std::array<float, 3>, kStreams> radiances;
+    for (std::size_t s = 0; by_stream && s < kStreams; ++s) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            radiances[s][c] = streams[c][s] + streams[c + 3][s] + streams[c + 6][s];
+            total += radiances[s][c];
         }
-    } else {
-        add_carefully(block, count);
     }
-    if (variance_of_ == VarianceOf::samples) add_spread(block, count);
+    if (!std::isfinite(total)) {
+        add_carefully(block, count);
+    } else {
+        for (std::size_t part = 0; part < kParts; ++part) parts_[part].add(sums[part]);
+        for (std::size_t s = 0; by_stream && s < kStreams; ++s) {
+            for (std::size_t c = 0; c < 3; ++c) streams_[s][c].add(radiances[s][c]);
+        }
+    }
+    if (variance_of_ == VarianceOf::samples) add_squares(block, count, samples() - before);
 }
 
 // Rare: leaves out the samples that are not finite, and sums the rest without overflow.
 void PixelAccumulator::add_carefully(SampleBlock& block, int count) {
-    for (int i = 0; i < count; ++i) {
-        const auto stream = static_cast<std::size_t>(i % kStreams);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        const std::size_t stream = i % kStreams;
         if (!finite_sample(block, i)) {
             clear_sample(block, i);
             --counts_[stream];
             ++dropped_;
+            continue;
         }
         for (std::size_t part = 0; part < kParts; ++part) {
-            sums_[part][stream] +=
-                static_cast<double>(part_values(block, static_cast<int>(part))[i]);
+            parts_[part].add(part_values(block, part)[i]);
+        }
+        for (std::size_t c = 0; variance_of_ == VarianceOf::streams && c < 3; ++c) {
+            streams_[stream][c].add(radiance(block, c, i));
         }
     }
 }
 
-void PixelAccumulator::add_spread(const SampleBlock& block, int count) {
-    const auto added = samples() - spread_count_;
-    if (added == 0) return;
-    const auto n = static_cast<double>(spread_count_);
-    const auto m = static_cast<double>(added);
+void PixelAccumulator::add_squares(const SampleBlock& block, int count, std::uint64_t kept) {
+    if (kept < 2) return;
+    const auto n = static_cast<double>(kept);
     for (std::size_t channel = 0; channel < 3; ++channel) {
         std::array<float, kBlockSamples> values;
         double sum = 0;
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-            values[i] =
-                block.emission[channel][i] + block.direct[channel][i] + block.indirect[channel][i];
+            values[i] = radiance(block, channel, i);
             sum += static_cast<double>(values[i]);
         }
-        const double block_mean = sum / m;
+        const double mean = sum / n;
         double squares = 0;
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-            const double deviation = static_cast<double>(values[i]) - block_mean;
+            const double deviation = static_cast<double>(values[i]) - mean;
             squares += deviation * deviation;
         }
         // Dropped samples stand in the block as zeros: take them out again.
-        squares -= (static_cast<double>(count) - m) * block_mean * block_mean;
-        const double delta = block_mean - running_mean_[channel];
-        squared_deviations_[channel] += squares + delta * delta * n * m / (n + m);
-        running_mean_[channel] += delta * m / (n + m);
+        squares -= (static_cast<double>(count) - n) * mean * mean;
+        squares_[channel].add_rounded(std::max(squares, 0.0));
     }
-    spread_count_ += added;
+    freedom_ += kept - 1;
 }
 
 std::uint64_t PixelAccumulator::samples() const {
-    std::uint64_t total = 0;
-    for (const std::uint64_t count : counts_) total += count;
-    return total;
+    return counts_[0] + counts_[1] + counts_[2] + counts_[3];
 }
 
-glm::vec3 PixelAccumulator::mean(std::size_t first_part) const {
-    const std::uint64_t n = samples();
-    if (n == 0) return glm::vec3(0.0f);
+// ---------------------------------------------------------------- from sums to values
+
+namespace {
+
+ExactSum::Digits count_digits(std::uint64_t count) {
+    ExactSum sum;
+    sum.add_count(count);
+    return sum.digits();
+}
+
+constexpr std::size_t kCounts = 9;  ///< index of the first count
+
+using Sums = std::span<const ExactSum::Digits>;
+
+glm::vec3 mean(Sums parts, double n) {
     glm::vec3 result;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-        const auto& streams = sums_[first_part + channel];
-        const double sum = (streams[0] + streams[1]) + (streams[2] + streams[3]);
-        result[static_cast<int>(channel)] = static_cast<float>(sum / static_cast<double>(n));
+    for (int c = 0; c < 3; ++c) {
+        result[c] = static_cast<float>(ExactSum::value(parts[static_cast<std::size_t>(c)]) / n);
     }
     return result;
 }
 
-double PixelAccumulator::stream_variance(int channel) const {
-    const auto total = static_cast<double>(samples());
-    const auto c = static_cast<std::size_t>(channel);
-    const auto sum_of = [&](std::size_t s) {
-        return sums_[c][s] + sums_[c + 3][s] + sums_[c + 6][s];
-    };
-    const double mean_of_all = (sum_of(0) + sum_of(1) + sum_of(2) + sum_of(3)) / total;
-    // Streams differ by at most one sample, so the weighted spread of their means estimates
-    // the variance of one sample of a stream; that of the pixel mean is a total-th of it.
+/// Unbiased for the variance of a sample, from what it is within each block.
+glm::vec3 variance_of_samples(Sums sums, double n) {
+    const double freedom = ExactSum::value(sums[kCounts + 4]);
+    glm::vec3 result(0.0f);
+    for (int c = 0; c < 3 && freedom > 0; ++c) {
+        const double squares = ExactSum::value(sums[kCounts + 1 + static_cast<std::size_t>(c)]);
+        result[c] = static_cast<float>(squares / freedom / n);
+    }
+    return result;
+}
+
+/// Streams differ by at most one sample, so the weighted spread of their means estimates the
+/// variance of one sample of a stream; that of the pixel mean is a total-th of it.
+float variance_of_streams(const std::array<double, kStreams>& sums,
+                          const std::array<double, kStreams>& counts) {
+    const double total = counts[0] + counts[1] + counts[2] + counts[3];
+    const double mean_of_all = (sums[0] + sums[1] + sums[2] + sums[3]) / total;
     double spread = 0;
     int streams = 0;
     for (std::size_t s = 0; s < kStreams; ++s) {
-        if (counts_[s] == 0) continue;
-        const auto n = static_cast<double>(counts_[s]);
-        const double deviation = sum_of(s) / n - mean_of_all;
-        spread += n * deviation * deviation;
+        if (counts[s] == 0) continue;
+        const double deviation = sums[s] / counts[s] - mean_of_all;
+        spread += counts[s] * deviation * deviation;
         ++streams;
     }
-    return streams > 1 ? spread / (streams - 1) / total : 0.0;
+    return streams > 1 ? static_cast<float>(spread / (streams - 1) / total) : 0.0f;
 }
 
-glm::vec3 PixelAccumulator::variance() const {
-    const auto n = static_cast<double>(samples());
-    if (n < 2.0) return glm::vec3(0.0f);
-    glm::vec3 result(0.0f);
-    for (int channel = 0; channel < 3; ++channel) {
-        const double value =
-            variance_of_ == VarianceOf::streams
-                ? stream_variance(channel)
-                : squared_deviations_[static_cast<std::size_t>(channel)] / (n - 1.0) / n;
-        result[channel] = static_cast<float>(value);
+glm::vec3 variance_of_streams(Sums sums) {
+    std::array<double, kStreams> counts;
+    for (std::size_t s = 0; s < kStreams; ++s) counts[s] = ExactSum::value(sums[kCounts + s]);
+    glm::vec3 result;
+    for (std::size_t c = 0; c < 3; ++c) {
+        std::array<double, kStreams> light;
+        for (std::size_t s = 0; s < kStreams; ++s) {
+            light[s] = ExactSum::value(sums[kCounts + kStreams + 3 * s + c]);
+        }
+        result[static_cast<int>(c)] = variance_of_streams(light, counts);
     }
     return result;
+}
+
+}  // namespace
+
+void PixelAccumulator::sums(std::span<ExactSum::Digits> out) const {
+    auto to = out.begin();
+    for (const ExactSum& sum : parts_) *to++ = sum.digits();
+    if (variance_of_ == VarianceOf::streams) {
+        for (const std::uint64_t count : counts_) *to++ = count_digits(count);
+        for (const auto& stream : streams_) {
+            for (const ExactSum& sum : stream) *to++ = sum.digits();
+        }
+        return;
+    }
+    *to++ = count_digits(samples());
+    if (variance_of_ == VarianceOf::nothing) return;
+    for (const ExactSum& sum : squares_) *to++ = sum.digits();
+    *to++ = count_digits(freedom_);
+}
+
+PixelValues pixel_values(Sums sums, VarianceOf variance_of) {
+    const bool by_stream = variance_of == VarianceOf::streams;
+    PixelValues values;
+    double n = 0;
+    for (std::size_t i = 0; i < (by_stream ? kStreams : 1u); ++i) {
+        n += ExactSum::value(sums[kCounts + i]);
+    }
+    values.samples = static_cast<std::uint64_t>(n);
+    if (values.samples == 0) return values;
+    values.emission = mean(sums.subspan(0, 3), n);
+    values.direct = mean(sums.subspan(3, 3), n);
+    values.indirect = mean(sums.subspan(6, 3), n);
+    if (values.samples < 2 || variance_of == VarianceOf::nothing) return values;
+    values.variance = by_stream ? variance_of_streams(sums) : variance_of_samples(sums, n);
+    return values;
+}
+
+std::vector<std::string> sum_names(VarianceOf variance_of) {
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name) {
+        for (const char channel : {'R', 'G', 'B'}) names.push_back(name + "." + channel);
+    };
+    for (const char* part : {"Emission", "Direct", "Indirect"}) add(part);
+    if (variance_of == VarianceOf::streams) {
+        for (int s = 0; s < kStreams; ++s) names.push_back("Count" + std::to_string(s));
+        for (int s = 0; s < kStreams; ++s) add("Stream" + std::to_string(s));
+        return names;
+    }
+    names.emplace_back("Count");
+    if (variance_of == VarianceOf::nothing) return names;
+    add("Squares");
+    names.emplace_back("Freedom");
+    return names;
 }
 
 }  // namespace vecino

@@ -35,6 +35,10 @@ std::string extension_of(const std::string& path) {
 
 }  // namespace
 
+std::string first_fault(const std::string& text) {
+    return text.empty() ? "no reason given" : text.substr(0, text.find('\n'));
+}
+
 Content content_of(const std::string& path, ExitCode code) {
     const std::string extension = extension_of(path);
     const Format* row = std::ranges::find(kFormats, extension, &Format::extension);

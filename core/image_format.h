@@ -20,6 +20,12 @@ namespace vecino {
 /// Whole images are addressed with 32-bit numbers in more than one library.
 constexpr long long kMaxPixels = std::numeric_limits<std::int32_t>::max();
 
+/// An attribute that parts of a render have and images do not: the version of their format.
+constexpr const char* kPartFormat = "part_format";
+
+/// OpenImageIO may list a dozen faults, one a line, that follow from the first.
+std::string first_fault(const std::string& text);
+
 /// What a file keeps of a frame.
 enum class Content {
     planes,  ///< all of it, as floats

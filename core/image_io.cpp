@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image_io.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "core/channel_file.h"
 #include "core/color.h"
 #include "core/error.h"
 #include "core/files.h"
@@ -27,127 +25,11 @@ namespace vecino {
 namespace {
 
 using OIIO::ImageInput;
-using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-using OIIO::Filesystem::IOFile;
 
-/// Rows written at a time: a multiple of what EXR compresses as one piece.
+/// Rows read at a time.
 constexpr int kBandRows = 64;
-constexpr float kMaxRgbe = 1.0e38f;  // its shared exponent ends at 2^127
-
-/// OpenImageIO may list a dozen faults, one a line, that follow from the first.
-std::string first_line(const std::string& text) {
-    return text.empty() ? "no reason given" : text.substr(0, text.find('\n'));
-}
-
-// ---------------------------------------------------------------- writing
-
-/// Fills one row of interleaved values.
-template <class Value>
-using FillRow = std::function<void(int y, Value* row)>;
-
-template <class Value>
-bool write_rows(ImageOutput& output, const ImageSpec& spec, const FillRow<Value>& fill) {
-    const auto row_values =
-        static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels);
-    std::vector<Value> band(row_values *
-                            static_cast<std::size_t>(std::min(kBandRows, spec.height)));
-    for (int begin = 0; begin < spec.height; begin += kBandRows) {
-        const int end = std::min(begin + kBandRows, spec.height);
-        for (int y = begin; y < end; ++y) {
-            fill(y, band.data() + static_cast<std::size_t>(y - begin) * row_values);
-        }
-        if (!output.write_scanlines(begin, end, 0, spec.format, band.data())) return false;
-    }
-    return true;
-}
-
-template <class Value>
-void write_file(const std::string& path, const ImageSpec& spec, const FillRow<Value>& fill) {
-    TemporaryFile file(path);
-    // OpenImageIO's PNG and BMP do not notice a full disk; a stream of ours does.
-    IOFile stream(file.stream(), IOFile::Write);
-    const auto output = ImageOutput::create(file.path(), &stream);
-    if (!output) cannot_write(path, first_line(OIIO::geterror()));
-    bool whole = output->open(file.path(), spec);
-    whole = whole && write_rows(*output, spec, fill);
-    whole = output->close() && whole;
-    const std::string reason = output->geterror();
-    const bool refused = !whole && std::ferror(file.stream()) == 0;
-    if (refused) cannot_write(path, first_line(reason));
-    file.replace_target();
-}
-
-ImageSpec make_spec(Extent size, int channels, const TypeDesc& type) {
-    ImageSpec spec(size.width, size.height, channels, type);
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");  // else it is the time of writing, and no two files are equal
-    return spec;
-}
-
-/// Writes three floats per pixel, each passed through convert.
-void save_floats(const Image& image, const std::string& path, float (*convert)(float)) {
-    const int width = image.size().width;
-    write_file<float>(path, make_spec(image.size(), 3, TypeDesc::FLOAT), [&](int y, float* row) {
-        for (int x = 0; x < width; ++x) {
-            for (int c = 0; c < 3; ++c) *row++ = convert(image(x, y)[c]);
-        }
-    });
-}
-
-void save_encoded(const Image& image, const std::string& path) {
-    Grid<glm::u8vec3> raster(image.size());
-    const auto encode = [](const glm::vec3& pixel) {
-        glm::u8vec3 encoded;
-        for (int c = 0; c < 3; ++c) encoded[c] = quantise_8bit(srgb_encode(pixel[c]));
-        return encoded;
-    };
-    std::ranges::transform(image.values(), raster.values().begin(), encode);
-    save_raster(raster, path);
-}
-
-/// One value of a plane.
-float component(const glm::vec3& value, std::size_t c) {
-    return value[static_cast<int>(c)];
-}
-float component(float value, std::size_t) {
-    return value;
-}
-float component(std::int32_t value, std::size_t) {
-    return static_cast<float>(value);
-}
-
-void save_planes(const Frame& frame, const std::string& path, const Metadata& metadata) {
-    const std::vector<const PlaneInfo*> planes = planes_to_write(frame, path);
-    ImageSpec spec = make_spec(frame.size(), 0, TypeDesc::FLOAT);
-    for (const PlaneInfo* plane : planes) {
-        for (std::size_t c = 0; c < plane->channel_count(); ++c) {
-            spec.channelnames.emplace_back(plane->channels[c]);
-        }
-    }
-    spec.nchannels = static_cast<int>(spec.channelnames.size());
-    for (const auto& [name, value] : metadata) {
-        std::visit([&, &key = name](const auto& v) { spec.attribute(key, v); }, value);
-    }
-    const auto stride = spec.channelnames.size();
-    write_file<float>(path, spec, [&](int y, float* row) {
-        for (const PlaneInfo* plane : planes) {
-            const std::size_t channels = plane->channel_count();
-            const auto fill = [&](auto member) {
-                for (int x = 0; x < spec.width; ++x) {
-                    const auto& value = (frame.*member)(x, y);
-                    float* out = row + static_cast<std::size_t>(x) * stride;
-                    for (std::size_t c = 0; c < channels; ++c) out[c] = component(value, c);
-                }
-            };
-            std::visit(fill, plane->member);
-            row += channels;
-        }
-    });
-}
-
-// ---------------------------------------------------------------- reading
 
 struct Source {
     std::string path;
@@ -171,7 +53,7 @@ Source open_source(const std::string& path) {
     ImageSpec hints;
     hints.attribute("oiio:UnassociatedAlpha", 1);  // else colours come multiplied by alpha
     Source source{path, ImageInput::open(path, &hints), {}};
-    if (!source.input) cannot_read(path, first_line(OIIO::geterror()));
+    if (!source.input) cannot_read(path, first_fault(OIIO::geterror()));
     source.spec = source.input->spec(0);
     const ImageSpec& spec = source.spec;
     if (spec.deep || spec.depth > 1) cannot_read(path, "deep and volume images are not supported");
@@ -223,6 +105,9 @@ std::optional<std::array<int, 3>> find_colour(const Source& source) {
 Location locate_radiance(const Source& source) {
     const auto colour = find_colour(source);
     if (!colour) {
+        if (source.spec.find_attribute(kPartFormat) != nullptr) {
+            mismatch(source, "a part of a render", "an image (vecino merge makes one of parts)");
+        }
         mismatch(source, "channels " + list(source.spec.channelnames), "R, G, B or Y among them");
     }
     return {&all_planes().front(), *colour};
@@ -265,7 +150,7 @@ class Samples {
             source.input->read_image(0, 0, first_, end, TypeDesc::FLOAT, values_.data());
         // Some readers (TIFF's up to 3.0) report a broken file and say yes all the same.
         const std::string reason = source.input->geterror();
-        if (!whole || !reason.empty()) cannot_read(source.path, first_line(reason));
+        if (!whole || !reason.empty()) cannot_read(source.path, first_fault(reason));
     }
 
     [[nodiscard]] glm::vec3 at(std::size_t pixel, const std::array<int, 3>& channels) const {
@@ -323,45 +208,22 @@ Frame read_planes(const Source& source, std::span<const Location> locations) {
     return frame;
 }
 
-}  // namespace
-
-void save_frame(const Frame& frame, const std::string& path, const Metadata& metadata) {
-    if (content_of(path, ExitCode::file) != Content::planes) {
-        return save_image(frame.radiance, path);
-    }
-    require_pixels(frame.size(), path);
-    save_planes(frame, path, metadata);
-}
-
-void save_image(const Image& image, const std::string& path) {
-    const Content content = content_of(path, ExitCode::file);
-    require_pixels(image.size(), path);
-    switch (content) {
-        case Content::planes:
-        case Content::linear:
-            return save_floats(image, path, [](float x) { return x; });
-        case Content::rgbe:
-            require_finite(image, path);
-            return save_floats(image, path, [](float x) { return std::clamp(x, 0.0f, kMaxRgbe); });
-        case Content::encoded:
-            require_finite(image, path);
-            return save_encoded(image, path);
-    }
-}
-
-void save_raster(const Grid<glm::u8vec3>& raster, const std::string& path) {
-    if (content_of(path, ExitCode::file) != Content::encoded) {
-        cannot_write(path, "8-bit pictures go into .png and .bmp files");
-    }
-    require_pixels(raster.size(), path);
-    ImageSpec spec = make_spec(raster.size(), 3, TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    write_file<std::uint8_t>(path, spec, [&](int y, std::uint8_t* row) {
-        for (int x = 0; x < spec.width; ++x) {
-            for (int c = 0; c < 3; ++c) *row++ = raster(x, y)[c];
+Metadata metadata_of(const ImageSpec& spec) {
+    Metadata metadata;
+    for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
+        const std::string name = attribute.name().string();
+        if (attribute.type() == TypeDesc::INT) {
+            metadata[name] = attribute.get_int();
+        } else if (attribute.type() == TypeDesc::FLOAT) {
+            metadata[name] = attribute.get_float();
+        } else if (attribute.type() == TypeDesc::STRING) {
+            metadata[name] = attribute.get_string();
         }
-    });
+    }
+    return metadata;
 }
+
+}  // namespace
 
 Frame load_frame(const std::string& path) {
     const Source source = open_source(path);
@@ -376,6 +238,39 @@ Image load_image(const std::string& path) {
     const Source source = open_source(path);
     const Location radiance = locate_radiance(source);
     return read_planes(source, {&radiance, 1}).radiance;
+}
+
+ChannelFile load_header(const std::string& path) {
+    const Source source = open_source(path);
+    return {size_of(source), metadata_of(source.spec), {}};
+}
+
+ChannelFile load_channels(const std::string& path) {
+    const Source source = open_source(path);
+    const ImageSpec& spec = source.spec;
+    const Extent size = size_of(source);
+    const auto channels = static_cast<std::size_t>(spec.nchannels);
+    const auto width = static_cast<std::size_t>(size.width);
+    require_memory(size.area() * channels * sizeof(float), path);
+    ChannelFile file{size, metadata_of(spec), {}};
+    for (const std::string& name : spec.channelnames) {
+        file.channels.push_back({name, std::vector<float>(size.area())});
+    }
+    std::vector<float> band(width * channels * kBandRows);
+    for (int begin = 0; begin < size.height; begin += kBandRows) {
+        const int end = std::min(begin + kBandRows, size.height);
+        if (!source.input->read_scanlines(0, 0, begin, end, 0, 0, spec.nchannels, TypeDesc::FLOAT,
+                                          band.data())) {
+            cannot_read(path, first_fault(source.input->geterror()));
+        }
+        const std::size_t first = static_cast<std::size_t>(begin) * width;
+        const std::size_t count = static_cast<std::size_t>(end - begin) * width;
+        for (std::size_t c = 0; c < channels; ++c) {
+            float* const to = &file.channels[c].values[first];
+            for (std::size_t i = 0; i < count; ++i) to[i] = band[i * channels + c];
+        }
+    }
+    return file;
 }
 
 std::string image_library_version() {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Image files, through OpenImageIO (which appears nowhere else). A file is written under a
-/// temporary name and renamed: whole or not at all. By extension:
+/// Image files, through OpenImageIO (which appears nowhere else: image_io.cpp reads,
+/// image_write.cpp writes). A file is written under a temporary name and renamed: whole or not at
+/// all. By extension:
 /// - `.exr`: every plane of a frame (channel names: core/planes.h), linear 32-bit float
 /// - `.hdr` `.tif` `.tiff`: radiance only, linear float (`.hdr` is RGBE)
 /// - `.png` `.bmp`: radiance only, clipped to [0,1], sRGB-encoded, 8 bit

@@ -2,16 +2,21 @@
 #include "core/render.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <functional>
 #include <mutex>
+#include <span>
 #include <string>
 
 #include "core/accumulate.h"
 #include "core/error.h"
-#include "core/memory.h"
+#include "core/frame_planes.h"
 #include "core/parallel.h"
+#include "core/part.h"
 #include "core/render_task.h"
 #include "core/timing.h"
+#include "core/trace_task.h"
 
 namespace vecino {
 namespace {
@@ -20,40 +25,14 @@ namespace {
 // at 1 spp.
 constexpr std::size_t kPixelsPerBlock = 16;
 
-/// Allocates the planes that were asked for.
-Frame make_frame(Extent size, const RenderSettings& settings) {
-    Frame frame;
+/// Those asked for, radiance, and not the variance of one sample.
+Planes planes_to_make(const RenderSettings& settings) {
+    Planes planes{Plane::radiance};
     for (const PlaneInfo& info : all_planes()) {
-        const bool wanted = info.plane == Plane::radiance || settings.planes.has(info.plane);
         const bool possible = info.plane != Plane::variance || settings.spp > 1;
-        if (!wanted || !possible) continue;
-        std::visit([&]<class T>(Grid<T> Frame::*member) { frame.*member = Grid<T>(size); },
-                   info.member);
+        if (possible && settings.planes.has(info.plane)) planes.add(info.plane);
     }
-    return frame;
-}
-
-void set(Image& plane, int x, int y, const glm::vec3& value) {
-    if (!plane.empty()) plane(x, y) = value;
-}
-
-void store_first_hit(const FirstHitRecord& hit, int x, int y, Frame& frame) {
-    const auto vector = [](const float(&v)[3]) { return glm::vec3(v[0], v[1], v[2]); };
-    set(frame.position_world, x, y, vector(hit.position_world));
-    set(frame.normal_world, x, y, vector(hit.normal_world));
-    set(frame.albedo, x, y, vector(hit.albedo));
-    if (!frame.distance_world.empty()) frame.distance_world(x, y) = hit.distance_world;
-    if (!frame.object_id.empty()) frame.object_id(x, y) = hit.object_id;
-}
-
-bool wants_first_hits(const Frame& frame) {
-    return !(frame.position_world.empty() && frame.normal_world.empty() && frame.albedo.empty() &&
-             frame.distance_world.empty() && frame.object_id.empty());
-}
-
-VarianceOf variance_of(const Frame& frame, Sampler sampler) {
-    if (frame.variance.empty()) return VarianceOf::nothing;
-    return sampler == Sampler::sobol ? VarianceOf::streams : VarianceOf::samples;
+    return planes;
 }
 
 /// Reports progress from any thread and remembers a wish to stop.
@@ -79,20 +58,37 @@ class ProgressReport {
     std::mutex mutex_;
 };
 
-class FrameTracer {
-  public:
-    FrameTracer(const TraceTask& task, const TraceKernel& kernel, const RenderSettings& settings)
-        : task_(task), kernel_(kernel), settings_(settings) {}
+/// What is done with a traced pixel. Returns false if its mean is not finite.
+using StorePixel =
+    std::function<bool(std::size_t index, const PixelAccumulator&, const FirstHitRecord&)>;
 
-    void run(Frame& frame, RenderStatistics& statistics, const Progress& progress) const {
-        const std::size_t pixels = frame.size().area();
+/// Traces an interval of the samples of every pixel.
+class SampleTracer {
+  public:
+    SampleTracer(const TraceTask& task, const RenderSettings& settings, SampleInterval samples)
+        : task_(task),
+          kernel_(kernel_for(settings.simd_width)),
+          settings_(settings),
+          samples_(samples),
+          centres_(settings.first_hit == FirstHit::centre && samples.begin == 0 &&
+                   common(settings.planes, kFirstHitPlanes) != Planes{}) {}
+
+    void run(const StorePixel& store, RenderStatistics& statistics,
+             const Progress& progress) const {
+        const std::size_t pixels = Extent{task_.width, task_.height}.area();
         ProgressReport report(progress, pixels);
         std::atomic<std::uint64_t> rays = 0;
         std::atomic<std::uint64_t> dropped = 0;
         std::atomic<std::uint64_t> non_finite = 0;
         for_each_block(pixels, kPixelsPerBlock, settings_.threads, [&](BlockRange block) {
             Counts counts;
-            for (std::size_t i = block.begin; i < block.end; ++i) trace_pixel(i, frame, counts);
+            PixelAccumulator pixel(variance_of(settings_));
+            for (std::size_t i = block.begin; i < block.end; ++i) {
+                pixel.clear();
+                const FirstHitRecord first = trace_pixel(i, pixel, counts);
+                counts.dropped += pixel.dropped();
+                if (!store(i, pixel, first)) ++counts.non_finite;
+            }
             rays += counts.rays;
             dropped += counts.dropped;
             non_finite += counts.non_finite;
@@ -101,7 +97,7 @@ class FrameTracer {
         statistics.rays = rays;
         statistics.dropped_samples = dropped;
         statistics.non_finite_pixels = non_finite;
-        statistics.samples = pixels * static_cast<std::uint64_t>(settings_.spp);
+        statistics.samples = pixels * static_cast<std::uint64_t>(samples_.end - samples_.begin);
     }
 
   private:
@@ -111,73 +107,57 @@ class FrameTracer {
         std::uint64_t non_finite = 0;
     };
 
-    void trace_pixel(std::size_t index, Frame& frame, Counts& counts) const {
-        const int x = static_cast<int>(index % static_cast<std::size_t>(task_.width));
-        const int y = static_cast<int>(index / static_cast<std::size_t>(task_.width));
-        PixelAccumulator pixel(variance_of(frame, settings_.sampler));
+    FirstHitRecord trace_pixel(std::size_t index, PixelAccumulator& pixel, Counts& counts) const {
+        const auto [x, y] = pixel_at(index, {task_.width, task_.height});
         FirstHitRecord first{};
         SampleBlock block;
-        for (int sample = 0; sample < settings_.spp; sample += kBlockSamples) {
-            const int count = std::min(kBlockSamples, settings_.spp - sample);
+        for (int sample = samples_.begin; sample < samples_.end;) {
+            const int count = std::min(kBlockSamples, samples_.end - sample);
             const SampleRange range{x, y, static_cast<std::uint32_t>(sample), count};
             counts.rays +=
                 kernel_.trace_samples(task_, range, block, sample == 0 ? &first : nullptr);
             pixel.add(block, count);
-            if (sample > settings_.spp - kBlockSamples) break;  // no overflow near the largest spp
+            sample += count;
         }
-        if (settings_.first_hit == FirstHit::centre && wants_first_hits(frame)) {
-            counts.rays += kernel_.trace_centres(task_, {x, y, 0, 1}, &first);
-        }
-        counts.dropped += pixel.dropped();
-        store(pixel, first, {x, y}, frame);
-        if (!is_finite(frame.radiance(x, y))) ++counts.non_finite;
-    }
-
-    struct Pixel {
-        int x, y;
-    };
-
-    static void store(const PixelAccumulator& sums, const FirstHitRecord& first, Pixel at,
-                      Frame& frame) {
-        const auto [x, y] = at;
-        const glm::vec3 emission = sums.emission();
-        const glm::vec3 direct = sums.direct();
-        const glm::vec3 indirect = sums.indirect();
-        set(frame.radiance, x, y, emission + direct + indirect);
-        set(frame.emission, x, y, emission);
-        set(frame.direct, x, y, direct);
-        set(frame.indirect, x, y, indirect);
-        if (!frame.variance.empty()) frame.variance(x, y) = sums.variance();
-        if (!frame.sample_count.empty()) {
-            frame.sample_count(x, y) = static_cast<float>(sums.samples());
-        }
-        store_first_hit(first, x, y, frame);
+        if (centres_) counts.rays += kernel_.trace_centres(task_, {x, y, 0, 1}, &first);
+        return first;
     }
 
     const TraceTask& task_;
     const TraceKernel& kernel_;
     const RenderSettings& settings_;
+    SampleInterval samples_;
+    bool centres_;
 };
 
-// Eq. 1 of the thesis. Constant over a pixel's samples: its box-filtered value is the one at the
-// centre.
-void fill_pattern(Frame& frame) {
-    const Extent size = frame.size();
-    for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) {
-            const glm::vec3 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(size.width),
-                               (static_cast<float>(y) + 0.5f) / static_cast<float>(size.height),
-                               0.0f);
-            set(frame.radiance, x, y, uv);
-            set(frame.emission, x, y, uv);
-            if (!frame.sample_count.empty()) frame.sample_count(x, y) = 1.0f;
-            FirstHitRecord hit{};
-            hit.position_world[0] = uv.x;
-            hit.position_world[1] = uv.y;
-            hit.normal_world[2] = 1.0f;
-            store_first_hit(hit, x, y, frame);
-        }
-    }
+struct Job {
+    const Scene& scene;
+    const RenderSettings& settings;
+    SampleInterval samples;
+};
+
+/// Of a render that has not begun. Throws Error(usage) for a packet width that is not to be had.
+RenderStatistics first_statistics(const RenderSettings& settings) {
+    RenderStatistics statistics;
+    statistics.threads = settings.threads > 0 ? settings.threads : default_thread_count();
+    statistics.simd_width = kernel_for(settings.simd_width).width;
+    return statistics;
+}
+
+/// Prepares a scene, traces an interval of samples, and hands each pixel to store.
+RenderStatistics trace(const Job& job, const StorePixel& store, const Progress& progress) {
+    const auto& [scene, settings, samples] = job;
+    RenderStatistics statistics = first_statistics(settings);
+    const Stopwatch scene_watch;
+    const FlatScene flat = flatten(scene);
+    TraceTask task = render_task(scene, flat, settings);
+    task.streams = planes_to_make(settings).has(Plane::variance) ? kStreams : 1;
+    statistics.scene_s = scene_watch.seconds();
+
+    const Stopwatch trace_watch;
+    SampleTracer(task, settings, samples).run(store, statistics, progress);
+    statistics.trace_s = trace_watch.seconds();
+    return statistics;
 }
 
 }  // namespace
@@ -190,29 +170,59 @@ std::vector<int> simd_widths() {
     return widths;
 }
 
+VarianceOf variance_of(const RenderSettings& settings) {
+    if (!planes_to_make(settings).has(Plane::variance)) return VarianceOf::nothing;
+    return settings.sampler == Sampler::sobol ? VarianceOf::streams : VarianceOf::samples;
+}
+
 Render render(const Scene& scene, const RenderSettings& settings, const Progress& progress) {
     check_settings(settings);
-    const TraceKernel& kernel = kernel_for(settings.simd_width);
+    const RenderStatistics statistics = first_statistics(settings);
     const Extent size = reduced(settings.size, settings.reduction);
-    Planes planes = settings.planes;
-    planes.add(Plane::radiance);
-    require_memory(bytes_of(planes, size), "frame of " + size_text(size));
-    Render result{make_frame(size, settings), {}};
-    result.statistics.threads = settings.threads > 0 ? settings.threads : default_thread_count();
-    result.statistics.simd_width = kernel.width;
+    Render result{make_frame(size, planes_to_make(settings)), statistics};
     if (scene.pattern == Pattern::xy_gradient) {
         fill_pattern(result.frame);
         return result;
     }
-    const Stopwatch scene_watch;
-    const FlatScene flat = flatten(scene);
-    TraceTask task = render_task(scene, flat, settings);
-    task.streams = result.frame.variance.empty() ? 1 : kStreams;
-    result.statistics.scene_s = scene_watch.seconds();
+    const VarianceOf variance = variance_of(settings);
+    const auto store = [&](std::size_t index, const PixelAccumulator& pixel,
+                           const FirstHitRecord& first) {
+        const Pixel at = pixel_at(index, size);
+        std::array<ExactSum::Digits, kMostSums> sums;
+        pixel.sums(sums);
+        store_first_hit(first, at, result.frame);
+        const PixelValues values = pixel_values(sums, variance);
+        store_values(values, at, result.frame);
+        return is_finite(values.radiance());
+    };
+    result.statistics = trace({scene, settings, {0, settings.spp}}, store, progress);
+    return result;
+}
 
-    const Stopwatch trace_watch;
-    FrameTracer(task, kernel, settings).run(result.frame, result.statistics, progress);
-    result.statistics.trace_s = trace_watch.seconds();
+PartRender render_part(const Scene& scene, const RenderSettings& settings, SampleInterval samples,
+                       const Progress& progress) {
+    check_settings(settings);
+    const std::string fault = interval_fault(samples, settings.spp);
+    if (!fault.empty()) throw Error(ExitCode::usage, "samples: " + fault);
+    if (scene.pattern != Pattern::none) {
+        throw Error(ExitCode::usage, "samples: found the scene " + scene.name +
+                                         ", which is a pattern, allowed: a scene of objects");
+    }
+    const Extent size = reduced(settings.size, settings.reduction);
+    const Planes planes = planes_to_make(settings);
+    const VarianceOf variance = variance_of(settings);
+    PartRender result{{samples, planes, variance, SampleSums(size, sum_count(variance)), {}}, {}};
+    Part& part = result.part;
+    if (samples.begin == 0) part.first_hits = make_frame(size, common(planes, kFirstHitPlanes));
+    const auto store = [&](std::size_t index, const PixelAccumulator& pixel,
+                           const FirstHitRecord& first) {
+        std::array<ExactSum::Digits, kMostSums> sums;
+        pixel.sums(sums);
+        part.sums.store(index, sums);
+        store_first_hit(first, pixel_at(index, size), part.first_hits);
+        return true;  // of the whole mean, nothing is known yet
+    };
+    result.statistics = trace({scene, settings, samples}, store, progress);
     return result;
 }
 

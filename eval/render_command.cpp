@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -6,10 +7,14 @@
 
 #include "core/files.h"
 #include "core/image_io.h"
+#include "core/part_file.h"
 #include "core/render.h"
 #include "core/timing.h"
 #include "eval/commands.h"
+#include "eval/part_metadata.h"
 #include "eval/progress.h"
+#include "eval/reference_store.h"
+#include "eval/render_metadata.h"
 #include "eval/render_options.h"
 
 namespace vecino {
@@ -20,6 +25,7 @@ struct RenderArguments {
     std::string output;
     std::map<std::string, std::string> options;  ///< by matrix key, as given
     std::string planes;
+    std::string samples;  ///< A:B, or empty
     int threads = 0;
     int simd_width = 0;
     bool json = false;
@@ -44,74 +50,89 @@ RenderSettings settings_of(const RenderArguments& arguments) {
     return settings;
 }
 
-Metadata metadata_of(const std::string& scene, const RenderSettings& s, double seconds) {
-    Metadata metadata{
-        {"scene", scene}, {"version", VECINO_VERSION}, {"seconds", static_cast<float>(seconds)}};
-    for (const RenderOption& row : render_options()) {
-        const nlohmann::json value = row.get(s);
-        const std::string key = row.name == "max_depth" ? "depth" : std::string(row.name);
-        if (value.is_number_integer() || value.is_number_unsigned()) {
-            metadata[key] = value.get<int>();
-        } else {
-            metadata[key] = value.is_string() ? value.get<std::string>() : value.dump();
-        }
+SampleInterval interval_of(const std::string& text, int spp) {
+    const auto fail = [&](const std::string& fault) {
+        throw Error(ExitCode::usage, "command line: --samples: " + fault);
+    };
+    const char* const end = text.data() + text.size();
+    SampleInterval samples;
+    const auto first = std::from_chars(text.data(), end, samples.begin);
+    const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
+    const auto second = std::from_chars(colon ? first.ptr + 1 : end, end, samples.end);
+    if (!colon || second.ec != std::errc() || second.ptr != end) {
+        fail("found \"" + text + "\", allowed: A:B, two integers");
     }
-    return metadata;
+    const std::string fault = interval_fault(samples, spp);
+    if (!fault.empty()) fail(fault);
+    return samples;
 }
 
-nlohmann::json result_json(const RenderStatistics& s, double write_s) {
-    return {{"time_s",
-             {{"total", s.scene_s + s.trace_s + write_s},
-              {"scene", s.scene_s},
-              {"trace", s.trace_s},
-              {"reconstruct", 0.0},
-              {"write", write_s}}},
-            {"samples", s.samples},
-            {"rays", s.rays},
-            {"samples_per_s", s.trace_s > 0 ? static_cast<double>(s.samples) / s.trace_s : 0.0},
-            {"threads", s.threads},
-            {"simd_width", s.simd_width},
-            {"dropped_samples", s.dropped_samples},
-            {"non_finite_pixels", s.non_finite_pixels}};
-}
-
-void print_result(const RenderArguments& arguments, const Render& result, double write_s) {
+void print_result(const RenderArguments& arguments, const RenderStatistics& s,
+                  const std::string& what, double write_s) {
     if (arguments.json) {
-        std::printf("%s\n", result_json(result.statistics, write_s).dump().c_str());
+        std::printf("%s\n", render_json(s, write_s).dump().c_str());
         return;
     }
-    const RenderStatistics& s = result.statistics;
-    const Extent size = result.frame.size();
-    std::printf("%s: %dx%d, %.2f s, %.2f Msamples/s on %d threads\n", arguments.output.c_str(),
-                size.width, size.height, s.scene_s + s.trace_s + write_s,
+    std::printf("%s: %s, %.2f s, %.2f Msamples/s on %d threads\n", arguments.output.c_str(),
+                what.c_str(), s.scene_s + s.trace_s + write_s,
                 s.trace_s > 0 ? static_cast<double>(s.samples) / s.trace_s * 1e-6 : 0.0, s.threads);
+}
+
+/// Traces with a progress bar.
+template <class Trace>
+auto with_progress(const Scene& scene, const Trace& trace) {
+    catch_interrupts();
+    ProgressBar bar("render " + scene.name);
+    return trace([&](double done) { return bar.update(done); });
+}
+
+ExitCode render_image(const RenderArguments& arguments, const RenderSettings& settings,
+                      const Scene& scene) {
+    const Render result = with_progress(
+        scene, [&](const Progress& progress) { return render(scene, settings, progress); });
+    const RenderStatistics& s = result.statistics;
+    const Stopwatch write_watch;
+    save_frame(result.frame, arguments.output,
+               render_metadata(arguments.scene, settings, s.scene_s + s.trace_s));
+    print_result(arguments, s, size_text(result.frame.size()), write_watch.seconds());
+    return report_non_finite(s, arguments.output);
+}
+
+ExitCode render_samples(const RenderArguments& arguments, const RenderSettings& settings,
+                        const Scene& scene) {
+    const SampleInterval samples = interval_of(arguments.samples, settings.spp);
+    const std::string hash = text_hash(read_file(arguments.scene));
+    const PartRender result = with_progress(scene, [&](const Progress& progress) {
+        return render_part(scene, settings, samples, progress);
+    });
+    const RenderStatistics& s = result.statistics;
+    Metadata metadata = render_metadata(arguments.scene, settings, s.scene_s + s.trace_s);
+    describe_part(hash, s, metadata);
+    const Stopwatch write_watch;
+    save_part(result.part, arguments.output, metadata);
+    print_result(arguments, s,
+                 size_text(result.part.sums.size()) + ", samples " + interval_text(samples) +
+                     " of " + std::to_string(settings.spp),
+                 write_watch.seconds());
+    return report_non_finite(s, arguments.output);
 }
 
 ExitCode run_render(const RenderArguments& arguments) {
     require_writable_extension(arguments.output);
     const RenderSettings settings = settings_of(arguments);
+    const bool in_part = !arguments.samples.empty();
+    if (in_part) {
+        interval_of(arguments.samples, settings.spp);  // before the scene is read
+        if (!is_exr(arguments.output)) {
+            throw Error(ExitCode::usage, arguments.output +
+                                             ": found another extension, allowed with --samples: "
+                                             ".exr");
+        }
+    }
     const Scene scene = load_scene(arguments.scene);
     require_writable(arguments.output);
-    catch_interrupts();
-    const Render result = [&] {
-        ProgressBar bar("render " + scene.name);
-        return render(scene, settings, [&](double done) { return bar.update(done); });
-    }();
-    const RenderStatistics& s = result.statistics;
-    const Stopwatch write_watch;
-    save_frame(result.frame, arguments.output,
-               metadata_of(arguments.scene, settings, s.scene_s + s.trace_s));
-    print_result(arguments, result, write_watch.seconds());
-    if (s.non_finite_pixels > 0) {
-        std::fprintf(stderr, "error: %s: %llu pixels are not finite\n", arguments.output.c_str(),
-                     static_cast<unsigned long long>(s.non_finite_pixels));
-        return ExitCode::non_finite;
-    }
-    if (s.dropped_samples > 0) {
-        std::fprintf(stderr, "warning: %llu samples were not finite and were left out\n",
-                     static_cast<unsigned long long>(s.dropped_samples));
-    }
-    return ExitCode::ok;
+    return in_part ? render_samples(arguments, settings, scene)
+                   : render_image(arguments, settings, scene);
 }
 
 }  // namespace
@@ -126,6 +147,11 @@ void add_render_command(CLI::App& app, Action& chosen) {
         add_table_option(*command, row, arguments->options[std::string(row.name)]);
     }
     command->add_option("--planes", arguments->planes, "all, or a list such as radiance,normal,id")
+        ->check(not_empty());
+    command
+        ->add_option("--samples", arguments->samples,
+                     "trace samples A to B - 1 alone, into a part for vecino merge "
+                     "(A:B, multiples of 64; B may be spp)")
         ->check(not_empty());
     command->add_option("--threads", arguments->threads, "default: all")
         ->check(CLI::Range(1, 1024));

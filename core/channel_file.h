@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// EXR files of any channels, each one 32-bit float per pixel, kept bit for bit.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/image_io.h"
+
+namespace vecino {
+
+/// A channel to write: its name, and its values by the number of the pixel, counted row by row.
+struct ChannelSource {
+    std::string name;
+    std::function<float(std::size_t pixel)> value;
+};
+
+/// Writes one row after the other; no copy of all channels is made. Throws Error(file).
+void save_channels(const std::string& path, Extent size, std::span<const ChannelSource> channels,
+                   const Metadata& metadata);
+
+struct Channel {
+    std::string name;
+    std::vector<float> values;  ///< one per pixel, row by row
+};
+
+struct ChannelFile {
+    Extent size;
+    Metadata metadata;
+    std::vector<Channel> channels;
+};
+
+/// Reads all but the channels. Throws as load_channels() does.
+ChannelFile load_header(const std::string& path);
+
+/// Reads what save_channels() wrote; attributes of other types than Metadata has are left out.
+/// Throws Error(file) if it cannot be read or decoded.
+ChannelFile load_channels(const std::string& path);
+
+}  // namespace vecino

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/render_metadata.h"
+
+#include <cstdio>
+
+#include "eval/render_options.h"
+
+namespace vecino {
+namespace {
+
+struct AttributeText {
+    std::string operator()(const std::string& text) const { return text; }
+    std::string operator()(auto number) const { return std::to_string(number); }
+};
+
+}  // namespace
+
+Metadata render_metadata(const std::string& scene, const RenderSettings& settings, double seconds) {
+    Metadata metadata{
+        {"scene", scene}, {"version", VECINO_VERSION}, {"seconds", static_cast<float>(seconds)}};
+    for (const RenderOption& row : render_options()) {
+        const nlohmann::json value = row.get(settings);
+        const std::string key = row.name == "max_depth" ? "depth" : std::string(row.name);
+        if (value.is_number_integer() || value.is_number_unsigned()) {
+            metadata[key] = value.get<int>();
+        } else {
+            metadata[key] = value.is_string() ? value.get<std::string>() : value.dump();
+        }
+    }
+    return metadata;
+}
+
+std::string attribute_text(const Metadata& metadata, const std::string& name) {
+    const auto found = metadata.find(name);
+    return found == metadata.end() ? "none" : std::visit(AttributeText{}, found->second);
+}
+
+nlohmann::json render_json(const RenderStatistics& s, double write_s) {
+    return {{"time_s",
+             {{"total", s.scene_s + s.trace_s + write_s},
+              {"scene", s.scene_s},
+              {"trace", s.trace_s},
+              {"reconstruct", 0.0},
+              {"write", write_s}}},
+            {"samples", s.samples},
+            {"rays", s.rays},
+            {"samples_per_s", s.trace_s > 0 ? static_cast<double>(s.samples) / s.trace_s : 0.0},
+            {"threads", s.threads},
+            {"simd_width", s.simd_width},
+            {"dropped_samples", s.dropped_samples},
+            {"non_finite_pixels", s.non_finite_pixels}};
+}
+
+ExitCode report_non_finite(const RenderStatistics& s, const std::string& output) {
+    if (s.non_finite_pixels > 0) {
+        std::fprintf(stderr, "error: %s: %llu pixels are not finite\n", output.c_str(),
+                     static_cast<unsigned long long>(s.non_finite_pixels));
+        return ExitCode::non_finite;
+    }
+    if (s.dropped_samples > 0) {
+        std::fprintf(stderr, "warning: %llu samples were not finite and were left out\n",
+                     static_cast<unsigned long long>(s.dropped_samples));
+    }
+    return ExitCode::ok;
+}
+
+}  // namespace vecino

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What an image file says of the render that it came from.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/error.h"
+#include "core/image_io.h"
+#include "core/render.h"
+
+namespace vecino {
+
+/// Scene, version, seconds, and every option of a render under its name ("depth" for max_depth).
+Metadata render_metadata(const std::string& scene, const RenderSettings& settings, double seconds);
+
+/// An attribute as text, for errors.
+std::string attribute_text(const Metadata& metadata, const std::string& name);
+
+/// Times and counts of a render as `--json` prints them.
+nlohmann::json render_json(const RenderStatistics& statistics, double write_s);
+
+/// Says on stderr what was not finite: nothing, a warning, or an error with the code that it has.
+ExitCode report_non_finite(const RenderStatistics& statistics, const std::string& output);
+
+}  // namespace vecino
