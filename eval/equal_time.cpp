@@ -17,6 +17,7 @@ namespace {
 // Long enough that a render's rate is steady, short beside the frames themselves.
 constexpr double kRender_s = 0.3;
 constexpr int kRounds = 5;
+constexpr int kFullPackets_spp = 64;  // a multiple of every packet width
 
 /// What the answer depends on: all but the answer itself, the seed, and how neighbours are weighed,
 /// which takes no time beside tracing. Cells that differ in that alone share their answer, and with
@@ -50,16 +51,11 @@ double trace_s(const Scene& scene, const RenderSettings& settings) {
     return render(scene, settings).statistics.trace_s;
 }
 
-/// As many samples per pixel as take about kRender_s.
-int calibration_spp(const Scene& scene, RenderSettings settings) {
-    settings.spp = 1;
-    while (settings.spp < (1 << 20)) {
-        const double seconds = trace_s(scene, settings);
-        if (seconds > kRender_s / 4)
-            return std::max(1, static_cast<int>(settings.spp * kRender_s / seconds));
-        settings.spp *= 4;
-    }
-    return settings.spp;
+int calibrate(const Scene& scene, RenderSettings settings, int asked_spp) {
+    return calibration_spp(asked_spp, [&](int spp) {
+        settings.spp = spp;
+        return trace_s(scene, settings);
+    });
 }
 
 double reconstruct_s(const Scene& scene, const Cell& cell) {
@@ -115,11 +111,25 @@ void EqualTimeBudgets::put(const Cell& cell, const std::string& state, int spp) 
     write_text_file(path_, entries_.dump(1) + "\n");
 }
 
+int calibration_spp(int asked_spp, const std::function<double(int spp)>& seconds_of) {
+    // Few samples leave lanes of a packet idle, and tell nothing of the rate of many.
+    if (asked_spp < kFullPackets_spp) return asked_spp;
+    for (int spp = kFullPackets_spp;; spp *= 4) {
+        const double seconds = seconds_of(spp);
+        if (seconds <= kRender_s / 4 && spp < (1 << 20)) continue;
+        const double wanted = spp * std::min(1.0, kRender_s / seconds);
+        const int packets = static_cast<int>(wanted) / kFullPackets_spp;
+        return std::max(1, packets) * kFullPackets_spp;
+    }
+}
+
 int measure_equal_time_spp(const Scene& scene, const Cell& cell) {
     RenderSettings path = path_settings(cell);
     RenderSettings low = low_settings(cell);
-    path.spp = calibration_spp(scene, path);
-    low.spp = calibration_spp(scene, low);
+    path.spp = calibrate(scene, path, cell.spp_asked);
+    low.spp = calibrate(scene, low,
+                        budgeted_spp(Budget::equal_samples, cell.spp_asked,
+                                     {path.size, reduced(low.size, low.reduction)}));
     std::vector<double> path_times;
     std::vector<double> low_times;
     for (int i = 0; i < kRounds; ++i) {  // in turn, so that a slow moment meets both

@@ -5,6 +5,7 @@
 // resumed run use the same.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -33,6 +34,10 @@ class EqualTimeBudgets {
     std::string path_;
     nlohmann::json entries_ = nlohmann::json::object();
 };
+
+/// How many samples per pixel to time, where asked_spp are wanted in the end: as many as fill whole
+/// packets and take about 0.3 s by seconds_of, or asked_spp where that is few.
+int calibration_spp(int asked_spp, const std::function<double(int spp)>& seconds_of);
 
 /// Measures path tracing and the cell's own frame in turn, in renders of a fraction of a second,
 /// and its reconstruction; from their rates follows how many samples per low-resolution pixel take

@@ -105,7 +105,11 @@ constexpr DescribedKey kMatrixKeys[] = {
 
 json matrix_schema() {
     json schema = object_schema(kMatrixKeys);
-    schema["anyOf"] = {{{"required", {"extends"}}}, {{"required", {"axes", "reference"}}}};
+    // A matrix that extends another one may leave to it what has to be there.
+    const json whole_reproduction{{"required", {"source", "variants"}}};
+    schema["anyOf"] = {{{"required", {"extends"}}},
+                       {{"required", {"axes", "reference"}},
+                        {"properties", {{"reproduction", whole_reproduction}}}}};
     return document_schema("An evaluation matrix of vecino", schema);
 }
 

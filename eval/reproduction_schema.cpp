@@ -132,8 +132,9 @@ json rows() {
 }
 
 constexpr DescribedKey kReproductionKeys[] = {
-    {"source", required, "what is reproduced", schema_of<kText>},
-    {"variants", required, "ways to run the same claims; the first is as published",
+    // Both required of a matrix that extends none: matrix_schema.cpp.
+    {"source", optional, "what is reproduced", schema_of<kText>},
+    {"variants", optional, "ways to run the same claims; the first is as published",
      [] {
          return array_schema(object_schema(kVariantKeys), {1, 0});
      }},

@@ -235,3 +235,15 @@ TEST_CASE("an estimate counts a budget that is not measured yet beside equal sam
     const double both = estimate_run(run.load(), run.directory).samples;
     CHECK(both - measured == 2.0 * 16 * 12 * 1000);  // two seeds, as many samples as path tracing
 }
+
+TEST_CASE("rates are measured on full packets, or on just what was asked for", "[equal_time]") {
+    const double packet_s = GENERATE(1e-7, 1e-4, 0.002, 0.1, 0.2, 5.0);  // of 16 samples a pixel
+    const auto seconds = [&](int spp) { return (spp + 15) / 16 * packet_s; };
+    CAPTURE(packet_s);
+    const int many = calibration_spp(10000, seconds);
+    CHECK(many % 64 == 0);
+    // The rate found is that of many samples, whatever the size of the image.
+    CHECK(seconds(many) / many == Approx(seconds(10000) / 10000));
+    CHECK((many == 64 || seconds(many) <= 0.31));
+    for (const int few : {1, 4, 17, 63}) CHECK(calibration_spp(few, seconds) == few);
+}
