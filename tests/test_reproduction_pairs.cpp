@@ -34,7 +34,7 @@ Selection selection(const Json& json) {
 
 Names selected(const Groups& groups, const Json& of, const Json& where = Json::object()) {
     Names names;
-    for (const GroupSummary* group : select(groups, selection(of), {"", "", selection(where)}))
+    for (const GroupSummary* group : select(groups, selection(of), {"", "", selection(where), {}}))
         names.push_back(group->group);
     return names;
 }
