@@ -61,7 +61,8 @@ int calibrate(const Scene& scene, RenderSettings settings, int asked_spp) {
 double reconstruct_s(const Scene& scene, const Cell& cell) {
     const Frame low = render(scene, low_settings(cell)).frame;
     std::vector<double> times;
-    for (int i = 0; i < kRounds; ++i) {
+    // A small image takes microseconds: a few repeats could all fall into one busy moment.
+    for (const Stopwatch all; times.size() < kRounds || all.seconds() < kRender_s / 4;) {
         const Stopwatch watch;
         (void)reconstruct(low, *cell.scheme, {cell.settings.size, cell.parameters, 0});
         times.push_back(watch.seconds());
@@ -123,6 +124,11 @@ int calibration_spp(int asked_spp, const std::function<double(int spp)>& seconds
     }
 }
 
+int equal_time_spp(const EqualTimes& times) {
+    const double spp = std::round((times.path_s - times.reconstruct_s) / times.low_s_per_spp);
+    return static_cast<int>(std::clamp(spp, 1.0, double{std::numeric_limits<int>::max()}));
+}
+
 int measure_equal_time_spp(const Scene& scene, const Cell& cell) {
     RenderSettings path = path_settings(cell);
     RenderSettings low = low_settings(cell);
@@ -136,10 +142,9 @@ int measure_equal_time_spp(const Scene& scene, const Cell& cell) {
         path_times.push_back(trace_s(scene, path));
         low_times.push_back(trace_s(scene, low));
     }
-    const double path_s = median(path_times) / path.spp * cell.spp_asked;
-    const double low_s_per_spp = median(low_times) / low.spp;
-    const double spp = std::round((path_s - reconstruct_s(scene, cell)) / low_s_per_spp);
-    return static_cast<int>(std::clamp(spp, 1.0, double{std::numeric_limits<int>::max()}));
+    return equal_time_spp({.path_s = median(path_times) / path.spp * cell.spp_asked,
+                           .low_s_per_spp = median(low_times) / low.spp,
+                           .reconstruct_s = reconstruct_s(scene, cell)});
 }
 
 }  // namespace vecino

@@ -39,9 +39,19 @@ class EqualTimeBudgets {
 /// packets and take about 0.3 s by seconds_of, or asked_spp where that is few.
 int calibration_spp(int asked_spp, const std::function<double(int spp)>& seconds_of);
 
+struct EqualTimes {
+    double path_s;         ///< path tracing with all its samples
+    double low_s_per_spp;  ///< the low-resolution frame, for one sample per pixel
+    double reconstruct_s;  ///< its reconstruction
+};
+
+/// Samples per low-resolution pixel with which frame and reconstruction take path tracing's time.
+/// At least 1, also where the reconstruction alone takes longer.
+int equal_time_spp(const EqualTimes& times);
+
 /// Measures path tracing and the cell's own frame in turn, in renders of a fraction of a second,
 /// and its reconstruction; from their rates follows how many samples per low-resolution pixel take
-/// as long as path tracing with cell.spp_asked. At least 1. Precondition: the cell is a scheme's.
+/// as long as path tracing with cell.spp_asked. Precondition: the cell is a scheme's.
 int measure_equal_time_spp(const Scene& scene, const Cell& cell);
 
 }  // namespace vecino
