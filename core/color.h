@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The sRGB transfer curve (IEC 61966-2-1), in the one place that knows it.
+// sRGB (IEC 61966-2-1): its transfer curve and its luminance, in the one place that knows them.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +23,12 @@ inline float srgb_decode(float encoded) {
 /// Encoded [0,1] to 8 bit, rounded to nearest.
 inline std::uint8_t quantise_8bit(float encoded) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(encoded, 0.0f, 1.0f) * 255.0f));
+}
+
+/// Of linear radiance.
+inline double luminance(const float (&rgb)[3]) {
+    return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
+           0.0722 * static_cast<double>(rgb[2]);
 }
 
 }  // namespace vecino

@@ -2,11 +2,13 @@
 #include "core/flat_scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <optional>
 
+#include "core/color.h"
 #include "core/embree_geometry.h"
 
 namespace vecino {
@@ -73,6 +75,7 @@ class Flattener {
         if (!has_normals_) flat_.vertex_normals.clear();
         fill_table();
         set_selection_probabilities();
+        flat_.light_tree = build_light_tree(flat_.lights);
         flat_.embree = std::make_unique<EmbreeScene>(EmbreeGeometry{
             quads_.shapes.data(), quads_.list.size(), triangles_.shapes.data(),
             triangles_.list.size(), spheres_.shapes.data(), spheres_.list.size(), has_mesh_});
@@ -169,8 +172,7 @@ class Flattener {
     }
 
     /// Through three corners; any others' coordinates are at most `others`.
-    [[nodiscard]] Surface flat_surface(const std::array<glm::vec3, 3>& corners,
-                                       float others) const {
+    [[nodiscard]] Surface flat_surface(const std::array<glm::vec3, 3>& corners, float others) {
         const glm::dvec3 normal = normal_of(corners[0], corners[1], corners[2]);
         Surface surface = new_surface();
         put(surface.fields + kShape, normal);
@@ -200,8 +202,11 @@ class Flattener {
         flat_.lights.push_back(light);
     }
 
-    [[nodiscard]] Surface new_surface() const {
+    // An emitter is added for each surface that emits, in the same order.
+    [[nodiscard]] Surface new_surface() {
         Surface surface{};
+        surface.fields[kLight] =
+            std::bit_cast<float>(emits(*material_) ? emitting_surfaces_++ : -1);
         put(surface.fields + kAlbedo, material_->albedo);
         put(surface.fields + kEmission, material_->emission);
         surface.object_id = object_id_;
@@ -218,10 +223,7 @@ class Flattener {
     // In proportion to emitted power.
     void set_selection_probabilities() {
         const auto power = [](const LightRecord& light) {
-            const double luminance = 0.2126 * static_cast<double>(light.radiance[0]) +
-                                     0.7152 * static_cast<double>(light.radiance[1]) +
-                                     0.0722 * static_cast<double>(light.radiance[2]);
-            return luminance * static_cast<double>(light.area);
+            return luminance(light.radiance) * static_cast<double>(light.area);
         };
         double total = 0;
         for (const LightRecord& light : flat_.lights) total += power(light);
@@ -241,6 +243,7 @@ class Flattener {
     bool has_mesh_ = false;
     bool has_normals_ = false;
     std::int32_t object_id_ = 0;
+    std::int32_t emitting_surfaces_ = 0;
     const Material* material_ = nullptr;
 };
 
@@ -274,6 +277,8 @@ TraceTask trace_task(const Scene& scene, const FlatScene& flat, float aspect) {
     task.vertex_normals = flat.vertex_normals.empty() ? nullptr : flat.vertex_normals.data();
     task.lights = flat.lights.data();
     task.light_count = static_cast<std::uint32_t>(flat.lights.size());
+    task.light_tree = {flat.light_tree.fields.data(), flat.light_tree.stride,
+                       flat.light_tree.count};
     put(task.background, scene.background);
     task.has_background = scene.background != glm::vec3(0.0f);
     set_camera(scene.camera, aspect, task);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/embree_scene.h"
+#include "core/light_tree.h"
 #include "core/scene.h"
 #include "core/trace_task.h"
 
@@ -20,6 +21,7 @@ struct FlatScene {
     std::uint32_t first_sphere = 0;
     std::vector<VertexNormals> vertex_normals;  ///< one per triangle; empty: no mesh has normals
     std::vector<LightRecord> lights;
+    LightTreeTable light_tree;
     std::unique_ptr<EmbreeScene> embree;
 };
 

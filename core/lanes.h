@@ -95,6 +95,9 @@ inline Float sqrt(Float v) {
 inline Float max(Float a, Float b) {
     return a > b ? a : b;
 }
+inline Int max(Int a, Int b) {
+    return a > b ? a : b;
+}
 inline Float min(Float a, Float b) {
     return a < b ? a : b;
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "core/lanes.h"
+#include "core/light_tree_lanes.h"
 #include "core/random_lanes.h"
 #include "core/rectangle_lanes.h"
 #include "core/trace_task.h"
@@ -25,22 +26,27 @@ inline Basis basis_around(Float3 n) {
     return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
-/// Emitters picked for W shading points.
-struct PickedLight {
+/// W emitters.
+struct Emitter {
     Float3 origin, edge1, edge2, normal, radiance;
-    Float area, radius, offset, inverse_length1, inverse_length2, probability;
+    Float area, radius, offset, inverse_length1, inverse_length2;
     Mask sphere, triangle, rectangle;
-    Float u;  ///< the random number, stretched to [0, 1) again
 };
 
-/// A picked light from a reader of the fields of LightRecord: by offset, in floats.
+/// Emitters picked for W shading points.
+struct PickedLight : Emitter {
+    Float probability;  ///< of having been picked; 0 where no emitter can be seen
+    Float u;            ///< the random number, stretched to [0, 1) again
+};
+
+/// Emitters from a reader of the fields of LightRecord: by offset, in floats.
 template <class Read>
-inline PickedLight read_light(const Read& read) {
+inline Emitter read_emitter(const Read& read) {
     const auto number = [&](std::size_t bytes) { return read(bytes / sizeof(float)); };
     const auto vector = [&](std::size_t bytes) {
         return Float3{number(bytes), number(bytes + 4), number(bytes + 8)};
     };
-    PickedLight light;
+    Emitter light;
     light.origin = vector(offsetof(LightRecord, origin));
     light.edge1 = vector(offsetof(LightRecord, edge1));
     light.edge2 = vector(offsetof(LightRecord, edge2));
@@ -58,6 +64,15 @@ inline PickedLight read_light(const Read& read) {
     return light;
 }
 
+inline Emitter emitter_at(const TraceTask& task, Int number) {
+    const auto* const fields = reinterpret_cast<const float*>(task.lights);
+    if (task.light_count == 1) {
+        return read_emitter([&](std::size_t place) { return splat(fields[place]); });
+    }
+    const Int base = record_of(number);
+    return read_emitter([&](std::size_t place) { return gather(fields + place, base); });
+}
+
 inline std::int32_t pick_index(const TraceTask& task, float u) {
     std::uint32_t low = 0;
     std::uint32_t high = task.light_count - 1;
@@ -72,24 +87,32 @@ inline std::int32_t pick_index(const TraceTask& task, float u) {
     return static_cast<std::int32_t>(low);
 }
 
-inline PickedLight pick_light(const TraceTask& task, Float u) {
+/// Chooses by power alone with u in [0, 1), which is stretched to [0, 1) again.
+inline ChosenLight choose_by_power(const TraceTask& task, Float& u) {
     const auto* const fields = reinterpret_cast<const float*>(task.lights);
-    if (task.light_count == 1) {
-        PickedLight light = read_light([&](std::size_t place) { return splat(fields[place]); });
-        light.probability = splat(1.0f);
-        light.u = u;
-        return light;
-    }
-    Int index;
-    for (int i = 0; i < W; ++i) index[i] = pick_index(task, u[i]);
-    const Int base = index * static_cast<int>(sizeof(LightRecord) / sizeof(float));
-    PickedLight light = read_light([&](std::size_t place) { return gather(fields + place, base); });
-    light.probability =
+    ChosenLight choice;
+    for (int i = 0; i < W; ++i) choice.light[i] = pick_index(task, u[i]);
+    const Int base = record_of(choice.light);
+    choice.probability =
         gather(fields + offsetof(LightRecord, selection_probability) / sizeof(float), base);
     const Float sum = gather(fields + offsetof(LightRecord, selection_cdf) / sizeof(float), base);
-    const Float inside = (u - (sum - light.probability)) / light.probability;
-    light.u = min(max(inside, splat(0.0f)), splat(0.99999994f));
-    return light;
+    const Float inside = (u - (sum - choice.probability)) / choice.probability;
+    u = min(max(inside, splat(0.0f)), splat(0.99999994f));
+    return choice;
+}
+
+inline Float probability_by_power(const TraceTask& task, Int light) {
+    const auto* const fields = reinterpret_cast<const float*>(task.lights);
+    const Int base = record_of(light);
+    return gather(fields + offsetof(LightRecord, selection_probability) / sizeof(float), base);
+}
+
+inline PickedLight pick_light(const TraceTask& task, const Receiver& at, Float u) {
+    ChosenLight choice{Int{}, splat(1.0f)};
+    if (task.light_count > 1)
+        choice =
+            task.by_contribution ? choose_by_contribution(task, at, u) : choose_by_power(task, u);
+    return {emitter_at(task, choice.light), choice.probability, u};
 }
 
 /// A point on an emitter as seen from a shading point.
@@ -99,7 +122,7 @@ struct LightPoint {
 };
 
 /// Uniform over the area: pdf d^2 / (cos A).
-inline LightPoint sample_area(const PickedLight& light, Float3 from, Pair u) {
+inline LightPoint sample_area(const Emitter& light, Float3 from, Pair u) {
     const Mask fold = light.triangle & (u.u + u.v > 1.0f);
     const Float a = select(fold, 1.0f - u.u, u.u);
     const Float b = select(fold, 1.0f - u.v, u.v);
@@ -114,7 +137,7 @@ inline LightPoint sample_area(const PickedLight& light, Float3 from, Pair u) {
 }
 
 /// Uniform over the cone that a sphere fills (Shirley et al. 1996): pdf 1 / (2 pi (1 - cos)).
-inline LightPoint sample_sphere(const PickedLight& light, Float3 from, Pair u) {
+inline LightPoint sample_sphere(const Emitter& light, Float3 from, Pair u) {
     const Float3 to_center = light.origin - from;
     const Float distance2 = dot(to_center, to_center);
     const Float distance = sqrt(distance2);

@@ -28,6 +28,19 @@ enum class LightPoint {
     solid_angle,  ///< uniform over the solid angle (Urena et al. 2013)
 };
 
+/// How next-event estimation chooses among emitters.
+enum class LightChoice {
+    power,         ///< in proportion to emitted power, wherever the surface is
+    contribution,  ///< to a bound of what reaches the surface (Conty Estevez and Kulla 2018)
+};
+
+/// Whether light that a bounce finds by chance counts beside next-event estimation. It does so for
+/// emitters whose points are uniform over their area, at every surface but the last of a path.
+enum class MultipleImportance {
+    none,     ///< next-event estimation stands for all light of emitters
+    balance,  ///< both count, weighed by the balance heuristic (Veach and Guibas 1995)
+};
+
 /// What next-event estimation knows of a rectangular emitter beside one point on it.
 enum class ControlVariate {
     none,
@@ -56,6 +69,8 @@ struct RenderSettings {
     LightSampling light_sampling = LightSampling::nee;            ///< how a path finds light
     LightPoint light_point = LightPoint::solid_angle;             ///< of nee
     ControlVariate control_variate = ControlVariate::irradiance;  ///< of nee
+    LightChoice light_choice = LightChoice::contribution;         ///< of nee
+    MultipleImportance multiple_importance = MultipleImportance::balance;  ///< of nee
     Sampler sampler = Sampler::sobol;             ///< where random numbers come from
     FirstHit first_hit = FirstHit::first_sample;  ///< which ray the first-hit planes come from
     std::uint32_t seed = 1;                       ///< any; renders of other seeds differ in noise

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render_task.h"
 
+#include <algorithm>
 #include <string>
 
 #include "core/error.h"
@@ -12,6 +13,12 @@ void require(bool holds, const std::string& name, long long found, const std::st
     if (holds) return;
     throw Error(ExitCode::usage,
                 name + ": found " + std::to_string(found) + ", allowed: " + allowed);
+}
+
+/// Whether points on such an emitter are uniform over its area from everywhere.
+bool is_by_area(const TraceTask& task, LightKind kind) {
+    if (kind == LightKind::rectangle) return !task.by_solid_angle && !task.control_variate;
+    return kind != LightKind::sphere;
 }
 
 }  // namespace
@@ -48,8 +55,13 @@ TraceTask render_task(const Scene& scene, const FlatScene& flat, const RenderSet
     task.height = size.height;
     task.max_depth = settings.max_depth;
     task.next_event_estimation = settings.light_sampling == LightSampling::nee;
+    task.by_contribution = settings.light_choice == LightChoice::contribution;
     task.by_solid_angle = settings.light_point == LightPoint::solid_angle;
     task.control_variate = settings.control_variate == ControlVariate::irradiance;
+    task.multiple_importance = settings.multiple_importance == MultipleImportance::balance &&
+                               std::ranges::any_of(flat.lights, [&](const LightRecord& light) {
+                                   return is_by_area(task, light.kind);
+                               });
     task.sobol = settings.sampler == Sampler::sobol;
     task.streams = 1;
     task.seed = settings.seed;

@@ -42,6 +42,8 @@ class Tracer {
     Mask occluded(const Ray& ray, Float t_far, Mask active);
     /// Radiance that surfaces send back along the rays that hit them.
     Float3 emission(const Surface& surface) const;
+    /// The numbers of the emitters that send it; -1 where there is none.
+    Int emitter(const Surface& surface) const;
     std::uint64_t rays() const { return rays_; }
 
   private:
@@ -157,6 +159,10 @@ inline void Tracer::put_on_spheres(const Float3& along_ray, const Float3& center
 
 inline Float3 Tracer::emission(const Surface& s) const {
     return select(s.front & s.hit, fields(kEmission, s.index), Float3{});
+}
+
+inline Int Tracer::emitter(const Surface& s) const {
+    return select(s.front & s.hit, (Int)field(kLight, s.index), Int{} - 1);
 }
 
 inline void Tracer::interpolate_normals(const HitPacket<W>& hits, const Ray& ray,

@@ -17,7 +17,7 @@ namespace {
 constexpr float kLeastSolidAngle = 1e-2f;
 // Points on a rectangle are sampled by solid angle within a distance whose square is so many times
 // its area. Farther away it looks nearly the same from all sides, and sampling by area is as good
-// and costs less.
+// and costs less. Within the same distance multiple importance sampling is worth it.
 constexpr float kNearAreas = 4.0f;
 
 /// Cosine-weighted direction around a normal (Malley's method).
@@ -71,22 +71,47 @@ LightSample sample_light(const TraceTask& task, const PickedLight& light, Float3
     return sample;
 }
 
-/// Light that arrives at a surface straight from one emitter, times cos / pi.
-Float3 sample_direct(Tracer& tracer, const TraceTask& task, const Surface& s, Mask active,
+Float3 ray_origin(const Surface& s) {
+    return s.position + s.normal * s.offset;
+}
+
+/// Whether a bounce that finds the emitter's light stands for a share of it: where points by area
+/// are noisy, close to it. Farther away they are not, and the bounce would only add its own noise.
+Mask is_shared(const TraceTask& task, const Emitter& emitter, Float3 from) {
+    const Float middle = select(emitter.triangle, splat(1.0f / 3.0f), splat(0.5f));
+    const Float3 to_middle = emitter.origin + (emitter.edge1 + emitter.edge2) * middle - from;
+    const Mask near = dot(to_middle, to_middle) < kNearAreas * emitter.area;
+    const bool otherwise = task.by_solid_angle || task.control_variate;
+    return near & ~(otherwise ? emitter.sphere | emitter.rectangle : emitter.sphere);
+}
+
+/// Surfaces that ask for light: those that are active, and of these, those whose bounce stands for
+/// a share of it too.
+struct Asking {
+    Mask active, weighed;
+};
+
+/// Light that arrives at a surface straight from one emitter, times cos / pi; where it is weighed,
+/// less the share that the bounce stands for (balance heuristic, Veach and Guibas 1995).
+Float3 sample_direct(Tracer& tracer, const TraceTask& task, const Surface& s, Asking asking,
                      Pair random) {
-    const PickedLight light = pick_light(task, random.u);
-    const Float3 from = s.position + s.normal * s.offset;
+    const Float3 from = ray_origin(s);
+    const PickedLight light = pick_light(task, {from, s.shading_normal}, random.u);
     const LightSample sample = sample_light(task, light, from, {light.u, random.v});
     const LightPoint& point = sample.point;
     const Ray shadow = {from, point.position + point.normal * light.offset - from};
     const Float distance = sqrt(dot(shadow.direction, shadow.direction));
     const Float cosine = dot(shadow.direction, s.shading_normal) / distance;
-    const Mask lit = active & (point.inverse_pdf > 0.0f) & (cosine > 0.0f) &
-                     (dot(shadow.direction, s.normal) > 0.0f);
+    const Mask lit = asking.active & (light.probability * point.inverse_pdf > 0.0f) &
+                     (cosine > 0.0f) & (dot(shadow.direction, s.normal) > 0.0f);
     if (!any(lit)) return Float3{};
     const Mask visible = lit & ~tracer.occluded(shadow, splat(1.0f), lit);
     const Float3 radiance = light.radiance * (1.0f / light.probability);
-    const Float unhidden = cosine * point.inverse_pdf * (1.0f / kPi);
+    Float unhidden = cosine * point.inverse_pdf * (1.0f / kPi);
+    if (task.multiple_importance) {
+        const Mask shared = asking.weighed & is_shared(task, light, from);
+        unhidden = select(shared, unhidden / (1.0f + unhidden / light.probability), unhidden);
+    }
     Float weight = select(visible, unhidden, splat(0.0f));
     if (task.control_variate && any(sample.has_rectangle)) {
         const Irradiance exact = rectangle_irradiance(sample.rectangle, s.shading_normal);
@@ -95,6 +120,26 @@ Float3 sample_direct(Tracer& tracer, const TraceTask& task, const Surface& s, Ma
         weight = select(usable, exact.value - hidden, weight);
     }
     return select(lit, radiance * weight, Float3{});
+}
+
+/// The share of an emitter's light that a bounce which hits it stands for, where next-event
+/// estimation stands for the rest.
+Float bounce_weight(const TraceTask& task, const Receiver& from, const Ray& ray, const Surface& hit,
+                    Int emitter) {
+    const Int number = max(emitter, Int{});
+    const Emitter light = emitter_at(task, number);
+    Float probability = splat(1.0f);
+    if (task.light_count > 1) {
+        probability = task.by_contribution ? probability_by_contribution(task, from, number)
+                                           : probability_by_power(task, number);
+    }
+    const Float3 to_hit = hit.position - from.position;
+    const Float distance2 = dot(to_hit, to_hit);
+    const Float cosine = -dot(hit.geometric_normal, ray.direction);
+    const Float pdf_light = probability * distance2 / (cosine * light.area);
+    const Float pdf_bounce = dot(ray.direction, from.normal) * (1.0f / kPi);
+    return select(is_shared(task, light, from.position), pdf_bounce / (pdf_bounce + pdf_light),
+                  splat(0.0f));
 }
 
 void add(float (&plane)[3][kBlockSamples], int at, Float3 light) {
@@ -132,35 +177,56 @@ class PathPacket {
         const bool last = bounce == task_.max_depth;
         const bool by_light = task_.next_event_estimation;
         Float3 light{};
+        weighed_ = Mask{};
         if (by_light && task_.light_count > 0) {
-            light = throughput_ *
-                    sample_direct(tracer, task_, surface_, active_, random_.pair(1 + 2 * vertex));
+            if (task_.multiple_importance) weighed_ = weighed_surfaces(last);
+            light = throughput_ * sample_direct(tracer, task_, surface_, {active_, weighed_},
+                                                random_.pair(1 + 2 * vertex));
         }
-        if (by_light && last && !task_.has_background) return light;
+        if (by_light && last && !task_.has_background) active_ &= weighed_;
+        if (!any(active_)) return light;
         const Ray ray = bounce_ray(random_.pair(2 + 2 * vertex));
         // A direction below the true surface (possible with shading normals) carries nothing.
         active_ &= dot(ray.direction, surface_.normal) > 0.0f;
-        return light + follow(tracer, ray, last);
+        if (by_light && last && !any(weighed_)) return light + find_background(tracer, ray);
+        return light + follow(tracer, ray);
+    }
+
+    /// The last surface's bounce would be traced for nothing else.
+    Mask weighed_surfaces(bool last) const {
+        return last ? active_ & is_near_emitters(task_, surface_.position) : active_;
     }
 
     Ray bounce_ray(Pair u) const {
-        const Float3 from = surface_.position + surface_.normal * surface_.offset;
-        return {from, cosine_direction(surface_.shading_normal, u)};
+        return {ray_origin(surface_), cosine_direction(surface_.shading_normal, u)};
     }
 
-    Float3 follow(Tracer& tracer, const Ray& ray, bool last) {
+    Float3 find_background(Tracer& tracer, const Ray& ray) const {
+        const Mask blocked = tracer.occluded(ray, splat(__builtin_inff()), active_);
+        return select(active_ & ~blocked, throughput_ * splat3(task_.background), Float3{});
+    }
+
+    Float3 follow(Tracer& tracer, const Ray& ray) {
         const Float3 background = splat3(task_.background);
-        if (task_.next_event_estimation && last) {  // only the background is still to be found
-            const Mask blocked = tracer.occluded(ray, splat(__builtin_inff()), active_);
-            return select(active_ & ~blocked, throughput_ * background, Float3{});
-        }
         const Float3 throughput = throughput_;
         const Mask traced = active_;
+        const Receiver from = {ray.origin, surface_.shading_normal};
         surface_ = tracer.trace(ray, traced);
         active_ = traced & surface_.hit;
         throughput_ = throughput * surface_.albedo;
-        const Float3 emitted = task_.next_event_estimation ? Float3{} : tracer.emission(surface_);
+        const Float3 emitted = found_light(tracer, from, ray);
         return select(traced, throughput * select(surface_.hit, emitted, background), Float3{});
+    }
+
+    /// Light of emitters that a bounce has hit, but for what next-event estimation stands for.
+    Float3 found_light(const Tracer& tracer, const Receiver& from, const Ray& ray) const {
+        if (!task_.next_event_estimation) return tracer.emission(surface_);
+        if (!task_.multiple_importance) return Float3{};
+        const Int emitter = tracer.emitter(surface_);
+        const Mask found = weighed_ & (emitter >= 0);
+        if (!any(found)) return Float3{};
+        const Float weight = bounce_weight(task_, from, ray, surface_, emitter);
+        return select(found, tracer.emission(surface_) * weight, Float3{});
     }
 
     const TraceTask& task_;
@@ -168,6 +234,7 @@ class PathPacket {
     Surface surface_;
     Float3 throughput_;
     Mask active_;
+    Mask weighed_;  ///< surfaces whose bounce stands for a share of the light of emitters
 };
 
 Int lane_numbers() {

@@ -19,7 +19,8 @@ enum SurfaceField {
     kAlbedo = 4,    ///< 3 numbers
     kOffset = 7,    ///< by which rays leave the surface, so that they do not hit it again
     kEmission = 8,  ///< 3 numbers: radiance
-    kSurfaceFields = 11
+    kLight = 11,    ///< the bits of its number among the emitters, or of -1
+    kSurfaceFields = 12
 };
 
 /// A table with a row per field and a column per surface: quads, triangles, spheres. Rows are
@@ -45,8 +46,31 @@ struct LightRecord {
     float offset_world;
     float inverse_length[2];  ///< of the edges
     LightKind kind;
+    // Chosen by power alone:
     float selection_probability;
     float selection_cdf;  ///< sum of the probabilities up to and including this light
+    // Chosen by contribution:
+    std::uint32_t trail;  ///< its way down the tree: bit k says which child to take at depth k
+};
+
+/// What a node of the tree over emitters knows of those below it.
+enum LightNodeField {
+    kLightNodeCenter = 0,   ///< 3 numbers: of the sphere around them
+    kLightNodeRadius2 = 3,  ///< its squared radius
+    kLightNodeAxis = 4,     ///< 3 numbers: of the cone that holds their normals
+    kLightNodeCosine = 7,   ///< of the angle between the cone's axis and its side
+    kLightNodeSine = 8,
+    kLightNodePower = 9,  ///< emitted along the normal: luminance times area
+    kLightNodeNext = 10,  ///< bits of the second child's number (the first is the next node), or,
+                          ///< of one emitter's node, of the complement of its number
+    kLightNodeFields = 11
+};
+
+/// A table with a row per field and a column per node, the root first. Padded like SurfaceTable.
+struct LightTree {
+    const float* fields;
+    std::uint32_t stride;
+    std::uint32_t count;
 };
 
 /// Shading normals at the corners of a triangle.
@@ -60,6 +84,7 @@ struct TraceTask {
     const VertexNormals* vertex_normals;  ///< one per triangle, or null when no mesh has normals
     const LightRecord* lights;
     std::uint32_t light_count;
+    LightTree light_tree;
     std::uint32_t first_triangle, first_sphere;  ///< of the surfaces
     bool has_triangles, has_spheres;
 
@@ -75,8 +100,13 @@ struct TraceTask {
 
     std::int32_t max_depth;
     bool next_event_estimation;
+    bool by_contribution;  ///< emitters are chosen through the tree, else by their power
     bool by_solid_angle;   ///< points on rectangles are uniform over it, else over their area
     bool control_variate;  ///< of rectangles: exact light less what is hidden
+    /// Light that bounces find by chance is weighed in, of emitters whose points are uniform over
+    /// their area: triangles and parallelograms; rectangles too, where neither of the above is on.
+    /// At a path's last surface, whose bounce is traced for this alone, only near emitters.
+    bool multiple_importance;
     bool sobol;
     /// 1, or kStreams: Sobol samples are dealt to that many independent scramblings, sample i to i
     /// % streams. Their spread is the only sound estimate of the variance, at the price of about 2

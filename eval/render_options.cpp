@@ -32,6 +32,14 @@ constexpr Named<ControlVariate> kControlVariates[] = {
     {"none", ControlVariate::none},
     {"irradiance", ControlVariate::irradiance},
 };
+constexpr Named<LightChoice> kLightChoices[] = {
+    {"power", LightChoice::power},
+    {"contribution", LightChoice::contribution},
+};
+constexpr Named<MultipleImportance> kMultipleImportances[] = {
+    {"none", MultipleImportance::none},
+    {"balance", MultipleImportance::balance},
+};
 constexpr Named<Sampler> kSamplers[] = {
     {"independent", Sampler::independent},
     {"sobol", Sampler::sobol},
@@ -43,6 +51,8 @@ constexpr Named<FirstHit> kFirstHits[] = {
 constexpr ChoiceKind kLightSampling{kLightSamplings};
 constexpr ChoiceKind kLightPoint{kLightPoints};
 constexpr ChoiceKind kControlVariate{kControlVariates};
+constexpr ChoiceKind kLightChoice{kLightChoices};
+constexpr ChoiceKind kMultipleImportance{kMultipleImportances};
 constexpr ChoiceKind kSampler{kSamplers};
 constexpr ChoiceKind kFirstHit{kFirstHits};
 
@@ -89,6 +99,14 @@ const RenderOption kOptions[] = {
      read_into<kControlVariate, &RenderSettings::control_variate>,
      [](Settings s) { return nlohmann::json(name_of(kControlVariates, s.control_variate)); },
      [](Settings s) { return name_of(kControlVariates, s.control_variate); }, schema_of<kControlVariate>},
+    {"light_choice", "--light-choice", "power, contribution", "of many emitters: chosen by power, or by what may reach the surface",
+     read_into<kLightChoice, &RenderSettings::light_choice>,
+     [](Settings s) { return nlohmann::json(name_of(kLightChoices, s.light_choice)); },
+     [](Settings s) { return name_of(kLightChoices, s.light_choice); }, schema_of<kLightChoice>},
+    {"multiple_importance", "--multiple-importance", "none, balance", "of emitters sampled by area: weigh in the light that bounces find",
+     read_into<kMultipleImportance, &RenderSettings::multiple_importance>,
+     [](Settings s) { return nlohmann::json(name_of(kMultipleImportances, s.multiple_importance)); },
+     [](Settings s) { return name_of(kMultipleImportances, s.multiple_importance); }, schema_of<kMultipleImportance>},
     {"sampler", "--sampler", "independent, sobol", "sobol is Owen-scrambled",
      read_into<kSampler, &RenderSettings::sampler>,
      [](Settings s) { return nlohmann::json(name_of(kSamplers, s.sampler)); },

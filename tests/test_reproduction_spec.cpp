@@ -172,7 +172,7 @@ TEST_CASE("a malformed reproduction is refused in one line", "[reproduction_spec
         {R"([{"op": "replace", "path": "/reproduction/claims/0/tests/0/regions/1", "value": "sky"}])",
          "/reproduction/claims/0/tests/0/regions/1: found \"sky\", allowed: emitter, edge, interior"},
         {R"([{"op": "replace", "path": "/reproduction/claims/0/tests/0/of", "value": {"scheme": "mean"}}])",
-         "/reproduction/claims/0/tests/0/of: found unknown key \"scheme\", allowed: scene, method, budget, size, reduction, spp, max_depth, light_sampling, light_point, control_variate, sampler, first_hit, seed, window, weighting, metric, min_normal_cosine, use_centre"},
+         "/reproduction/claims/0/tests/0/of: found unknown key \"scheme\", allowed: scene, method, budget, size, reduction, spp, max_depth, light_sampling, light_point, control_variate, light_choice, multiple_importance, sampler, first_hit, seed, window, weighting, metric, min_normal_cosine, use_centre"},
         {R"([{"op": "replace", "path": "/reproduction/claims/0/tests/0/of", "value": {"window": [3, 4]}}])",
          "/reproduction/claims/0/tests/0/of/window/1: found 4, allowed: an odd integer from 1 to 9999"},
         {R"([{"op": "replace", "path": "/reproduction/claims/0/any", "value": "yes"}])",

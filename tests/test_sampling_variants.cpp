@@ -31,8 +31,10 @@ const std::vector<Variant>& variants() {
     static const std::vector<Variant> rows = {
         {{{"light_sampling", "none"}, {"sampler", "independent"}}, 2048},
         {{{"light_sampling", "none"}, {"sampler", "sobol"}}, 2048},
-        {{{"light_point", "area"}, {"control_variate", "none"}, {"sampler", "independent"}}, 256},
-        {{{"light_point", "area"}, {"control_variate", "none"}, {"sampler", "sobol"}}, 256},
+        {{{"light_point", "area"}, {"control_variate", "none"}, {"multiple_importance", "none"}, {"sampler", "independent"}}, 256},
+        {{{"light_point", "area"}, {"control_variate", "none"}, {"multiple_importance", "none"}, {"sampler", "sobol"}}, 256},
+        {{{"light_point", "area"}, {"control_variate", "none"}, {"multiple_importance", "balance"}, {"sampler", "independent"}}, 256},
+        {{{"light_point", "area"}, {"control_variate", "none"}, {"multiple_importance", "balance"}, {"sampler", "sobol"}}, 256},
         {{{"light_point", "area"}, {"control_variate", "irradiance"}, {"sampler", "independent"}}, 256},
         {{{"light_point", "area"}, {"control_variate", "irradiance"}, {"sampler", "sobol"}}, 256},
         {{{"light_point", "solid_angle"}, {"control_variate", "none"}, {"sampler", "independent"}}, 256},
@@ -178,6 +180,42 @@ bool agrees(const Agreement& a) {
     return a.chi2 < kMostChi2 && a.worst < kMostWorst && a.worst_mean < kMostMean;
 }
 
+/// A floor and two walls with a lamp of every kind, near them and far: a rectangle, a skew
+/// parallelogram, a quad that is none, two triangles, a sphere and a lamp that faces away; a sky
+/// too.
+Scene lamps_of_every_kind() {
+    return scene_from(R"({
+        "camera": {"position": [0, 1.2, 4.2], "look_at": [0, 0.7, 0], "up": [0, 1, 0], "vertical_fov_degrees": 35},
+        "background": [0.05, 0.06, 0.08],
+        "materials": {"white": {"albedo": [0.7, 0.7, 0.7]}, "red": {"albedo": [0.6, 0.2, 0.2]},
+                      "weak": {"emission": [0.5, 0.6, 0.7]}, "strong": {"emission": [4, 3, 2]},
+                      "warm": {"albedo": [0.5, 0.5, 0.5], "emission": [1.5, 1, 0.5]}},
+        "objects": [
+          {"quad": [[-2, 0, 2], [2, 0, 2], [2, 0, -1], [-2, 0, -1]], "material": "white"},
+          {"quad": [[-2, 0, -1], [2, 0, -1], [2, 2, -1], [-2, 2, -1]], "material": "white"},
+          {"quad": [[-2, 0, 2], [-2, 0, -1], [-2, 2, -1], [-2, 2, 2]], "material": "red"},
+          {"quad": [[-1.5, 1.8, -0.9], [-0.9, 1.8, -0.9], [-0.9, 1.8, -0.4], [-1.5, 1.8, -0.4]], "material": "strong"},
+          {"quad": [[-0.6, 0.3, -0.8], [-0.1, 0.3, -0.8], [0.1, 0.3, -0.4], [-0.4, 0.3, -0.4]], "material": "weak"},
+          {"quad": [[0.6, 0.9, -0.95], [1.2, 0.9, -0.95], [1.1, 0.9, -0.5], [0.7, 0.9, -0.4]], "material": "warm"},
+          {"triangles": {"positions": [[-1.95, 0.4, 0], [-1.95, 0.4, 0.8], [-1.6, 0.9, 0.4], [-1.95, 1.4, 0.4]],
+                         "indices": [[0, 1, 2], [1, 3, 2]]}, "material": "weak"},
+          {"sphere": {"center": [1.5, 0.3, 0.2], "radius": 0.15}, "material": "strong"},
+          {"quad": [[0, 1.9, 0], [0.4, 1.9, 0], [0.4, 1.9, -0.4], [0, 1.9, -0.4]], "material": "strong"}]})");
+}
+
+/// Ways of choosing among emitters and of weighing in what bounces find.
+std::vector<Variant> choices() {
+    std::vector<Variant> rows = {{{{"light_sampling", "none"}}, 4096}};
+    for (const char* choice : {"power", "contribution"})
+        for (const char* importance : {"none", "balance"})
+            for (const char* sampler : {"independent", "sobol"})
+                rows.push_back({{{"light_choice", choice},
+                                 {"multiple_importance", importance},
+                                 {"sampler", sampler}},
+                                256});
+    return rows;
+}
+
 Measured scaled(Measured measured, double factor) {
     for (glm::dvec3& value : measured.mean) value *= factor;
     return measured;
@@ -219,5 +257,36 @@ TEST_CASE("near a lamp, every way of sampling a rectangle agrees with two triang
         CAPTURE(name_of(variant), found.chi2, found.worst, found.worst_mean);
         CHECK(agrees(found));
         CHECK_FALSE(agrees(agreement(scaled(measured, 1.03), expected)));
+    }
+    for (const char* sampler : {"independent", "sobol"}) {
+        const Variant balanced{{{"multiple_importance", "balance"}, {"sampler", sampler}}, 1024};
+        const Measured measured = measure(repository_scene("near_lamp_mesh"), balanced);
+        const Agreement found = agreement(measured, expected);
+        CAPTURE(name_of(balanced), found.chi2, found.worst, found.worst_mean);
+        CHECK(agrees(found));
+    }
+}
+
+// The way that knows least of where emitters are is held against: by power, points by area, each
+// light found in one way alone.
+TEST_CASE("of many emitters, every way of choosing one agrees with chance and with power",
+          "[render][slow]") {
+    const bool is_corridor = GENERATE(false, true);
+    const Scene scene = is_corridor ? repository_scene("corridor") : lamps_of_every_kind();
+    const Variant plain{{{"light_choice", "power"},
+                         {"light_point", "area"},
+                         {"control_variate", "none"},
+                         {"multiple_importance", "none"},
+                         {"sampler", "independent"}},
+                        8192};
+    const Measured by_power = measure(scene, plain);
+    const Expected expected{by_power.mean, by_power.variance};
+    for (const Variant& variant : choices()) {
+        const Measured measured = measure(scene, variant);
+        const Agreement found = agreement(measured, expected);
+        CAPTURE(is_corridor, name_of(variant), found.chi2, found.worst, found.worst_mean);
+        CHECK(agrees(found));
+        const bool is_noisy = variant.spp > 256;
+        CHECK_FALSE(agrees(agreement(scaled(measured, is_noisy ? 1.1 : 1.03), expected)));
     }
 }
