@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/clones.h"
+
 namespace vecino {
 namespace {
 
@@ -21,6 +23,30 @@ StreamSums sum_streams(const float* values) {
         sums[s] = (lanes[s] + lanes[s + 4]) + (lanes[s + 8] + lanes[s + 12]);
     }
     return sums;
+}
+
+// In double: 8 partial sums, for the same reason.
+VECINO_INLINE double sum_of(const std::array<double, kBlockSamples>& values) {
+    std::array<double, 8> lanes{};
+    for (std::size_t i = 0; i < kBlockSamples; i += lanes.size()) {
+        for (std::size_t k = 0; k < lanes.size(); ++k) lanes[k] += values[i + k];
+    }
+    return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
+           ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+}
+
+/// Squared deviations of n values from their mean; values beyond the first count are not there, and
+/// those that were dropped are zeros.
+VECINO_CLONES double squared_deviations(const float* samples, std::size_t count, double n) {
+    std::array<double, kBlockSamples> values;
+    for (std::size_t i = 0; i < kBlockSamples; ++i) values[i] = static_cast<double>(samples[i]);
+    const double mean = sum_of(values) / n;
+    for (std::size_t i = 0; i < kBlockSamples; ++i) {
+        const double deviation = values[i] - mean;
+        values[i] = i < count ? deviation * deviation : 0.0;
+    }
+    const double dropped = static_cast<double>(count) - n;
+    return std::max(sum_of(values) - dropped * mean * mean, 0.0);
 }
 
 float* part_values(SampleBlock& block, std::size_t part) {
@@ -112,23 +138,11 @@ void PixelAccumulator::add_carefully(SampleBlock& block, int count) {
 
 void PixelAccumulator::add_squares(const SampleBlock& block, int count, std::uint64_t kept) {
     if (kept < 2) return;
-    const auto n = static_cast<double>(kept);
+    std::array<float, kBlockSamples> values;
     for (std::size_t channel = 0; channel < 3; ++channel) {
-        std::array<float, kBlockSamples> values;
-        double sum = 0;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-            values[i] = radiance(block, channel, i);
-            sum += static_cast<double>(values[i]);
-        }
-        const double mean = sum / n;
-        double squares = 0;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-            const double deviation = static_cast<double>(values[i]) - mean;
-            squares += deviation * deviation;
-        }
-        // Dropped samples stand in the block as zeros: take them out again.
-        squares -= (static_cast<double>(count) - n) * mean * mean;
-        squares_[channel].add_rounded(std::max(squares, 0.0));
+        for (std::size_t i = 0; i < kBlockSamples; ++i) values[i] = radiance(block, channel, i);
+        squares_[channel].add_rounded(squared_deviations(
+            values.data(), static_cast<std::size_t>(count), static_cast<double>(kept)));
     }
     freedom_ += kept - 1;
 }

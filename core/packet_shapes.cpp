@@ -6,15 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-// Compiled for several instruction sets; the loader picks one.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define VECINO_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define VECINO_CLONES
-#endif
-
-#define VECINO_INLINE [[gnu::always_inline]] inline
+#include "core/clones.h"
 
 namespace vecino {
 namespace {
