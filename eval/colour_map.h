@@ -12,7 +12,7 @@ namespace vecino {
 /// protan, deutan and tritan vision are simulated.
 constexpr glm::u8vec3 kNonFiniteColour{255, 0, 255};
 
-/// Inferno, from black (0) to pale yellow (1): perceptually uniform, lightness never falls. Clipped
+/// Magma, from black (0) to pale yellow (1): perceptually uniform, lightness never falls. Clipped
 /// to [0,1].
 glm::u8vec3 sequential_colour(float value);
 
