@@ -22,10 +22,10 @@ const legend = (() => {
             text = value.toPrecision(digits);
             if (Math.fround(Number(text)) === value) break;
         }
-        return String(Number(text)).replace("-", "−");
+        return String(Number(text)).replaceAll("-", "−");
     }
 
-    const shortText = (value) => String(Number(value.toPrecision(4))).replace("-", "−");
+    const shortText = (value) => String(Number(value.toPrecision(4))).replaceAll("-", "−");
 
     /// Counts of a map's values over its range; first and last bin hold what lies beyond, too.
     function histogram(map, range) {

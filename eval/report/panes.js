@@ -8,7 +8,7 @@ const panes = (() => {
     const stage = document.getElementById("viewer-stage");
     const canvases = Object.fromEntries(all(".pane", stage).map((pane) => [pane.dataset.pane, pane.querySelector("canvas")]));
     const handle = document.getElementById("viewer-wipe");
-    const markColours = [null, [255, 0, 255], [0, 229, 255], [0, 176, 80]]; // by errors.kinds; none is in a map
+    const markColours = [null, [255, 0, 255], [0, 229, 255], [0, 255, 0]]; // by errors.kinds; none is near a map
     const letters = [null, "NaN", "+Inf", "−Inf"];
     const mostMarks = 400; // drawn per pane
     const largest = 128; // screen pixels per pixel

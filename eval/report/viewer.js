@@ -11,7 +11,7 @@ const viewer = (() => {
     const kinds = ["magnitude", "sign", "ssim"];
     // Kept from cell to cell, so that pictures compare.
     const state = {
-        index: 0, kind: "magnitude", exposure: 0, isReference: false, turn: 0, from: null,
+        index: 0, kind: "magnitude", exposure: 0, isReference: false, turn: 0, like: {},
         ranges: { magnitude: report.viewer.ranges.magnitude || 0.1, sign: report.viewer.ranges.sign || 0.1, ssim: null },
     };
     let shown = null; // {test, reference, map} of the cell in sight
@@ -23,18 +23,19 @@ const viewer = (() => {
     const referencePicture = (group) => document.querySelector(`#${card(group)?.dataset.reference || "none"} img`);
     const isReduced = (g) => g.params.reduction > 1;
 
-    /// The cell whose parameters the others of its scene are chosen by: path tracing has no factor of its own.
-    function anchor(group) {
-        if (isReduced(group)) state.from = group;
-        if (state.from?.scene !== group.scene) state.from = cells.find((g) => g.scene === group.scene && isReduced(g)) ?? group;
-        return state.from;
+    /// The parameters by which others are chosen: of what was looked at last and has them. Path tracing has no factor, nearest
+    /// no window.
+    function remembered(group) {
+        const known = isReduced(group) ? group : cells.find((g) => g.scene === group.scene && isReduced(g));
+        if (isReduced(group) || state.like.reduction === undefined) Object.assign(state.like, known?.params);
+        return state.like;
     }
 
     /// One cell per method, in the scene and factor of this one, otherwise as alike as there is.
     function siblings(group) {
-        const like = anchor(group);
-        const alike = (g) => report.varying.filter((name) => g.params[name] === like.params[name]).length;
-        const candidates = cells.filter((g) => g.scene === group.scene && (!isReduced(g) || g.params.reduction === like.params.reduction));
+        const like = remembered(group);
+        const alike = (g) => report.varying.filter((name) => g.params[name] === like[name]).length;
+        const candidates = cells.filter((g) => g.scene === group.scene && (!isReduced(g) || g.params.reduction === like.reduction));
         const best = ({ method }) => {
             if (method === group.method) return group;
             const ranked = candidates.filter((g) => g.method === method).sort((a, b) => alike(b) - alike(a));
@@ -78,7 +79,7 @@ const viewer = (() => {
         const { test, reference, error } = shown.pictures;
         panes.show({ test: state.isReference ? reference : test, reference, error });
         part("test-tag").textContent = state.isReference ? "reference" : "image";
-        part("exposure-text").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure} EV`.replace("-", "−");
+        part("exposure-text").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure} EV`.replaceAll("-", "−");
         part("exposure").value = state.exposure;
         press("[data-kind]", (b) => b.dataset.kind === state.kind);
     }
