@@ -148,6 +148,23 @@ class Viewer(Reader):
         label = PAGE.value("document.getElementById('viewer-histogram').getAttribute('aria-label')")
         self.assertEqual(sum(int(word) for word in label.split() if word.isdigit()), WIDTH * HEIGHT - len(BAD))
 
+    def test_the_address_brings_a_view_back(self):
+        self.look_at("cornell_sphere.mean.f3.w5")
+        PAGE.key("m")
+        PAGE.key("w")
+        PAGE.value("panes.goTo(8, 8)")
+        scale = self.scale()
+        PAGE.wait_until("location.hash.includes('at=') && location.hash.includes('map=sign&layout=wipe')")
+        PAGE.wait_until(f"Math.abs(Number(new URLSearchParams(location.hash.slice(1)).get('at').split(',')[0]) - {scale}) < 0.01")
+        address = PAGE.value("location.href")
+        self.open_report()
+        PAGE.open("about:blank")
+        PAGE.open(address)
+        self.wait_for_cell("cornell_sphere.mean.f3.w5")
+        self.assertAlmostEqual(self.scale(), scale, delta=0.01)
+        self.assertEqual(PAGE.value("panes.stage.dataset.layout"), "wipe")
+        self.assertEqual(PAGE.value("document.querySelector('[data-kind=sign]').getAttribute('aria-pressed')"), "true")
+
     def test_arrows_step_through_the_cells_and_escape_closes(self):
         self.look_at("cornell.path")
         PAGE.key("ArrowRight")

@@ -54,17 +54,19 @@ const matrix = (() => {
         return /^psnr(_float)?_db$/.test(metric().name) ? "identical" : "–";
     }
 
-    /// 0 for the worst value in sight, 1 for the best.
+    const isBound = (group) => group.method === "blocky_ceiling"; // nothing that one could use
+
+    /// 0 for the worst value in sight, 1 for the best; bounds do not count.
     function rankOf(groups) {
         const level = (g) => {
             const value = metric().of(g)?.mean;
             return value === undefined ? NaN : metric().isLog ? Math.log(value) : value;
         };
-        const levels = groups.map(level).filter((v) => !Number.isNaN(v));
+        const levels = groups.filter((g) => !isBound(g)).map(level).filter((v) => !Number.isNaN(v));
         const [low, high] = [Math.min(...levels), Math.max(...levels)];
         return (group) => {
             if (fieldText(group) === "identical") return 1;
-            const t = high > low ? (level(group) - low) / (high - low) : 1;
+            const t = high > low ? Math.min(1, Math.max(0, (level(group) - low) / (high - low))) : 1;
             return metric().isHigher ? t : 1 - t;
         };
     }
@@ -73,6 +75,16 @@ const matrix = (() => {
         const t = 0.12 + 0.84 * rank;
         element.style.background = panes.cssColour("magnitude", t, 1);
         element.style.color = t > 0.58 ? "#000" : "#fff";
+    }
+
+    /// "f2 w7 inverse"
+    function shortParameters(group) {
+        const letters = { reduction: "f", window: "w" };
+        return report.varying.filter((name) => group.params[name] !== undefined).map((name) => {
+            const value = text(group.params[name]);
+            if (letters[name]) return letters[name] + value;
+            return typeof group.params[name] === "string" ? value : `${name} ${value}`;
+        }).join(" ");
     }
 
     function field(group, rank, isBest) {
@@ -85,7 +97,7 @@ const matrix = (() => {
         const remark = document.createElement("small");
         button.type = "button";
         button.append(fieldText(group), isBest ? " ★" : "");
-        remark.textContent = group.parameters.replace(/reduction /g, "f").replace(/window /g, "w").replaceAll(", ", " ");
+        remark.textContent = shortParameters(group);
         button.append(remark);
         button.title = `${group.group}: ${metric().name} ${fieldText(group)} ${metric().unit}`;
         if (!Number.isNaN(rank)) paint(button, rank);
@@ -105,7 +117,7 @@ const matrix = (() => {
         const found = new Map();
         for (const scene of report.scenes) {
             const row = methods.map((method) => fieldGroup(scene, method));
-            const usable = row.filter((g) => g && g.method !== "blocky_ceiling" && metric().of(g));
+            const usable = row.filter((g) => g && !isBound(g) && metric().of(g));
             found.set(scene, { row, best: usable.length > 1 ? usable.reduce(better) : null });
         }
         return found;

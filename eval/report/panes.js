@@ -18,6 +18,7 @@ const panes = (() => {
     let cursor = null;
     let wipe = 0.5;
     let cursorMoved = () => {};
+    let viewMoved = () => {};
     let isDue = false;
 
     // ---- From values to colours -----------------------------------------------------------------------------------------------
@@ -177,6 +178,7 @@ const panes = (() => {
         if (view.scale <= fitting()) view = { scale: 0, x: size[0] / 2, y: size[1] / 2 };
         view.x = Math.min(size[0], Math.max(0, view.x));
         view.y = Math.min(size[1], Math.max(0, view.y));
+        viewMoved();
         draw();
     }
 
@@ -225,17 +227,27 @@ const panes = (() => {
         draw();
     }
 
+    /// What is in sight; scale 0 stands for all of it.
+    function place(to) {
+        if (to) {
+            view = { ...to };
+            hold();
+        }
+        return { ...view };
+    }
+
     function moveWipe(to) {
         wipe = Math.min(1, Math.max(0, to));
         draw();
     }
 
     return {
-        picture, heat, cssColour, markColours, show, draw, fit, zoom, pan, goTo, point, moveWipe, placeIn,
+        picture, heat, cssColour, markColours, show, draw, fit, zoom, pan, goTo, place, point, moveWipe, placeIn,
         canvases, stage, handle,
         wipe: () => wipe,
         cursor: () => cursor,
         onCursor: (call) => { cursorMoved = call; },
+        onView: (call) => { viewMoved = call; },
     };
 })();
 

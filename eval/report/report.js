@@ -46,4 +46,5 @@
     charts.draw();
     convergence.draw();
     matrix.draw();
+    viewer.follow();
 })();

@@ -82,6 +82,7 @@ const viewer = (() => {
         part("exposure-text").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure} EV`.replaceAll("-", "−");
         part("exposure").value = state.exposure;
         press("[data-kind]", (b) => b.dataset.kind === state.kind);
+        note();
     }
 
     function precisionText({ test, reference }) {
@@ -175,6 +176,7 @@ const viewer = (() => {
         panes.stage.dataset.layout = layout;
         press("button[data-layout]", (b) => b.dataset.layout === layout);
         panes.draw();
+        note();
     }
 
     function expose(stops) {
@@ -251,7 +253,7 @@ const viewer = (() => {
         event.preventDefault();
     }
 
-    /// Opens a cell by the id of its group; false if there is nothing to see of it. kind: which error map, if it matters.
+    /// Opens a cell by the id of its group, a promise; false if there is nothing to see of it. kind: which error map, if it matters.
     function open(id, { kind = null, isReference = false } = {}) {
         const group = cells.find((g) => g.id === id) ?? cells.find((g) => card(g)?.dataset.reference === id);
         if (!group) return false;
@@ -262,8 +264,37 @@ const viewer = (() => {
             dialog.showModal();
             dialog.focus(); // not a button: keys are the viewer's
         }
-        show();
-        return true;
+        return show().then(() => true);
+    }
+
+    // ---- Links: the address tells what is in sight ------------------------------------------------------------------------------
+
+    let isNoted = true;
+
+    /// In the address, once things have come to rest.
+    function note() {
+        if (!isNoted) return;
+        isNoted = false;
+        setTimeout(() => {
+            isNoted = true;
+            const { scale, x, y } = panes.place();
+            const at = scale ? [scale, x, y].map((v) => Number(v.toFixed(2))).join(",") : "";
+            const parts = { view: cells[state.index].group, map: state.kind, layout: panes.stage.dataset.layout, at };
+            const hash = dialog.open ? `#${new URLSearchParams(parts)}` : " ";
+            if (dialog.open || location.hash.startsWith("#view=")) history.replaceState(null, "", hash);
+        }, 300);
+    }
+
+    /// Opens what the address tells, if it tells something.
+    async function follow() {
+        const parts = new URLSearchParams(location.hash.slice(1));
+        const group = cells.find((g) => g.group === parts.get("view"));
+        if (!group || dialog.open) return;
+        const kind = kinds.find((k) => k === parts.get("map"));
+        if (parts.get("layout") === "side" || parts.get("layout") === "wipe") setLayout(parts.get("layout"));
+        const [scale, x, y] = (parts.get("at") ?? "").split(",").map(Number);
+        await open(group.id, { kind });
+        if (scale > 0 && Number.isFinite(x + y)) panes.place({ scale, x, y });
     }
 
     all("[data-kind]", dialog).forEach((b) => b.addEventListener("click", () => setKind(b.dataset.kind)));
@@ -274,5 +305,8 @@ const viewer = (() => {
     panes.onCursor((pixel) => shown && legend.read(pixel, shown));
     setLayout(narrow.matches ? "wipe" : "side");
     addEventListener("resize", () => dialog.open && update());
-    return { open };
+    addEventListener("hashchange", follow);
+    dialog.addEventListener("close", note);
+    panes.onView(note);
+    return { open, follow };
 })();
