@@ -38,12 +38,16 @@ const errors = (() => {
         return found;
     }
 
-    const displays = new WeakMap();
+    const displays = []; // of the planes used last: an image and its reference
 
-    /// Display values of a plane, kept as long as it is.
+    /// Display values of a plane.
     function display(plane) {
-        if (!displays.has(plane)) displays.set(plane, plane.values.map((v) => (Number.isFinite(v) ? encode(v) : v)));
-        return displays.get(plane);
+        let found = displays.find((each) => each.plane === plane);
+        if (found) displays.splice(displays.indexOf(found), 1);
+        else found = { plane, values: plane.values.map((v) => (Number.isFinite(v) ? encode(v) : v)) };
+        displays.push(found);
+        if (displays.length > 2) displays.shift();
+        return found.values;
     }
 
     const differences = {
@@ -65,7 +69,7 @@ const errors = (() => {
     const gaussian = (() => {
         const weights = Array.from({ length: ssimSide }, (_, i) => Math.exp(-((i - ssimBorder) ** 2) / (2 * 1.5 ** 2)));
         const sum = weights.reduce((a, b) => a + b);
-        return weights.map((w) => w / sum);
+        return Float64Array.from(weights, (w) => w / sum);
     })();
 
     /// Weighted sums along one axis, of whole windows alone.
@@ -83,6 +87,19 @@ const errors = (() => {
         return { values: out, size };
     }
 
+    /// 8-bit values of one channel.
+    function channel(display, c) {
+        const values = new Float64Array(display.length / 3);
+        for (let i = 0, at = c; i < values.length; ++i, at += 3) values[i] = Math.round(255 * display[at]);
+        return values;
+    }
+
+    function product(a, b) {
+        const values = new Float64Array(a.length);
+        for (let i = 0; i < values.length; ++i) values[i] = a[i] * b[i];
+        return values;
+    }
+
     function localMean(values, size) {
         const across = blur(values, size, true);
         return blur(across.values, across.size, false).values;
@@ -90,14 +107,14 @@ const errors = (() => {
 
     /// ssim of one channel of 8-bit values, without the border.
     function ssimChannel(x, y, size) {
-        const product = (a, b) => a.map((v, i) => v * b[i]);
         const [meanX, meanY] = [localMean(x, size), localMean(y, size)];
         const [xx, yy, xy] = [product(x, x), product(y, y), product(x, y)].map((p) => localMean(p, size));
-        return meanX.map((mx, i) => {
-            const my = meanY[i];
+        for (let i = 0; i < xy.length; ++i) {
+            const [mx, my] = [meanX[i], meanY[i]];
             const squares = mx * mx + my * my;
-            return ((2 * mx * my + c1) * (2 * (xy[i] - mx * my) + c2)) / ((squares + c1) * (xx[i] + yy[i] - squares + c2));
-        });
+            xy[i] = ((2 * mx * my + c1) * (2 * (xy[i] - mx * my) + c2)) / ((squares + c1) * (xx[i] + yy[i] - squares + c2));
+        }
+        return xy;
     }
 
     /// 1 − ssim of each pixel, mean over channels; none in the border of 5 that ssim crops, nor where a window holds a
@@ -107,7 +124,6 @@ const errors = (() => {
         const values = new Float32Array(width * height).fill(NaN);
         if (Math.min(width, height) < ssimSide) return values;
         const [x, y] = [test, reference].map(display);
-        const channel = (v, c) => Float64Array.from({ length: width * height }, (_, i) => Math.round(255 * v[3 * i + c]));
         const maps = [0, 1, 2].map((c) => ssimChannel(channel(x, c), channel(y, c), [width, height]));
         const inner = width - 2 * ssimBorder;
         for (let i = 0; i < maps[0].length; ++i) {

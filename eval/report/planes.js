@@ -6,7 +6,7 @@
 
 const planes = (() => {
     const { folder, embedded, precision } = report.viewer;
-    const mostBytes = 160e6; // of planes that are kept, and as much of display values; the longest unused goes first
+    const mostBytes = 96e6; // of planes that are kept; the longest unused goes first
     const kept = new Map();
     const waiting = new Map();
 

@@ -15,6 +15,7 @@ const viewer = (() => {
         ranges: { magnitude: report.viewer.ranges.magnitude || 0.1, sign: report.viewer.ranges.sign || 0.1, ssim: null },
     };
     let shown = null; // {test, reference, map} of the cell in sight
+    let drawn = {}; // the reference's picture, which many cells share
 
     // ---- Cells of one place ---------------------------------------------------------------------------------------------------
 
@@ -58,8 +59,11 @@ const viewer = (() => {
     }
 
     function drawImages() {
-        const [test, reference] = [shown.test, shown.reference].map((plane) => panes.picture(plane, state.exposure));
-        shown.pictures = { test, reference };
+        const { test, reference } = shown;
+        if (drawn.plane !== reference || drawn.exposure !== state.exposure) {
+            drawn = { plane: reference, exposure: state.exposure, picture: panes.picture(reference, state.exposure) };
+        }
+        shown.pictures = { test: panes.picture(test, state.exposure), reference: drawn.picture };
     }
 
     function drawMap() {
