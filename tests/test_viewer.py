@@ -137,6 +137,8 @@ class Viewer(Reader):
         self.assert_colour("test", at, RUN.image(ODD).at(13, 8), gain=2)
         dark = sum(self.colour("error", error_at))
         before = float(self.text("#viewer-range"))
+        self.assertIn(f"{before:.0e}"[0], "125")
+        self.assertEqual(self.text("#viewer-range"), f"{before:g}")
         for _ in range(3):
             PAGE.key("[")
         self.assertAlmostEqual(float(self.text("#viewer-range")), before / 10, delta=before / 1000)

@@ -9,10 +9,16 @@ const viewer = (() => {
     const cells = report.groups.filter((g) => g.plane);
     const narrow = matchMedia("(max-width: 40rem)");
     const kinds = ["magnitude", "sign", "ssim"];
+
+    /// That of the page's maps: a round number that was a float32.
+    function sharedRange(kind) {
+        return Number((report.viewer.ranges[kind] || 0.1).toPrecision(6));
+    }
+
     // Kept from cell to cell, so that pictures compare.
     const state = {
         index: 0, kind: "magnitude", exposure: 0, isReference: false, turn: 0, like: {},
-        ranges: { magnitude: report.viewer.ranges.magnitude || 0.1, sign: report.viewer.ranges.sign || 0.1, ssim: null },
+        ranges: { magnitude: sharedRange("magnitude"), sign: sharedRange("sign"), ssim: null },
     };
     let shown = null; // {test, reference, map} of the cell in sight
     let drawn = {}; // the reference's picture, which many cells share
