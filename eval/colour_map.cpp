@@ -29,7 +29,7 @@ ColourMap make_sequential_map() {
     cv::Mat ramp(1, 256, CV_8U);
     for (int i = 0; i < ramp.cols; ++i) ramp.at<uchar>(0, i) = static_cast<uchar>(i);
     cv::Mat bgr, rgb;
-    cv::applyColorMap(ramp, bgr, cv::COLORMAP_INFERNO);
+    cv::applyColorMap(ramp, bgr, cv::COLORMAP_MAGMA);
     cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
     return to_colours(rgb);
 }

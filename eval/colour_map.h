@@ -8,11 +8,11 @@
 
 namespace vecino {
 
-/// Magenta is in neither map; of the usual marker colours it stays farthest from both of them when
-/// protan, deutan and tritan vision are simulated.
+/// Magenta is in neither map, and stays apart from both of them when protan, deutan and tritan
+/// vision are simulated: no colour of theirs comes closer than a CIELAB distance of 15.
 constexpr glm::u8vec3 kNonFiniteColour{255, 0, 255};
 
-/// Inferno, from black (0) to pale yellow (1): perceptually uniform, lightness never falls. Clipped
+/// Magma, from black (0) to pale yellow (1): perceptually uniform, lightness never falls. Clipped
 /// to [0,1].
 glm::u8vec3 sequential_colour(float value);
 

@@ -15,22 +15,6 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
     return text;
 }
 
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const auto byte = [&](std::size_t offset) {
-            return i + offset < bytes.size() ? static_cast<unsigned char>(bytes[i + offset]) : 0u;
-        };
-        const std::uint32_t group = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for (const int shift : {18, 12, 6, 0}) text += kDigits[group >> shift & 63u];
-    }
-    const std::size_t padding = (3 - bytes.size() % 3) % 3;
-    return text.replace(text.size() - padding, padding, padding, '=');
-}
-
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -69,8 +53,24 @@ std::string script_source(std::string_view source) {
     return replaced(std::string(source), "</script", "<\\/script");
 }
 
+std::string base64_text(std::string_view bytes) {
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const auto byte = [&](std::size_t offset) {
+            return i + offset < bytes.size() ? static_cast<unsigned char>(bytes[i + offset]) : 0u;
+        };
+        const std::uint32_t group = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for (const int shift : {18, 12, 6, 0}) text += kDigits[group >> shift & 63u];
+    }
+    const std::size_t padding = (3 - bytes.size() % 3) % 3;
+    return text.replace(text.size() - padding, padding, padding, '=');
+}
+
 std::string png_url(std::string_view bytes) {
-    return "data:image/png;base64," + base64(bytes);
+    return "data:image/png;base64," + base64_text(bytes);
 }
 
 std::string fill_page(std::string_view page,

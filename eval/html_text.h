@@ -19,6 +19,9 @@ std::string script_json(const nlohmann::json& json);
 /// JavaScript for the inside of a script element. Our own or a library's, not a run's.
 std::string script_source(std::string_view source);
 
+/// Base64 with padding (RFC 4648).
+std::string base64_text(std::string_view bytes);
+
 /// A data: URL that holds a PNG file.
 std::string png_url(std::string_view bytes);
 

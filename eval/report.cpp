@@ -12,12 +12,14 @@
 
 namespace vecino {
 
-std::string write_report(const ReportData& data, const std::string& output) {
+std::string write_report(const ReportData& data, const std::string& output,
+                         std::optional<PlanePrecision> embedded) {
     std::string path = output.empty() ? data.directory + "/report.html" : output;
     write_reproduction(data);
     const bool is_markdown = std::filesystem::path(path).extension() == ".md";
-    write_text_file(
-        path, is_markdown ? report_markdown(data) : report_page(data, make_report_pictures(data)));
+    write_text_file(path, is_markdown
+                              ? report_markdown(data)
+                              : report_page(data, make_report_pictures(data, {path, embedded})));
     return path;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Puts the parts of the report together, with the data that its charts are drawn from.
+#include "eval/error_map.h"
 #include "eval/html_text.h"
 #include "eval/report_assets.h"
 #include "eval/report_sections.h"
@@ -19,27 +20,95 @@ Json methods_json(const ReportData& data) {
     return methods;
 }
 
-Json data_json(const ReportData& data) {
+/// The colours of a map from the lower end of its range to the upper one, as on the error pictures:
+/// "rrggbb" after "rrggbb".
+std::string map_colours(ErrorKind kind) {
+    const int count = kind == ErrorKind::sign ? 513 : 256;
+    const float low = kind == ErrorKind::sign ? -1.0f : 0.0f;
+    Grid<float> ramp({count, 1});
+    for (int i = 0; i < count; ++i)
+        ramp(i, 0) = low + (1 - low) * static_cast<float>(i) / static_cast<float>(count - 1);
+    std::string text;
+    const Grid<glm::u8vec3> colours = error_colours(ramp, {kind, 1.0f, ""});
+    for (const glm::u8vec3 colour : colours.values()) {
+        char hex[8];
+        std::snprintf(hex, sizeof hex, "%02x%02x%02x", unsigned{colour.r}, unsigned{colour.g},
+                      unsigned{colour.b});
+        text += hex;
+    }
+    return text;
+}
+
+/// What the viewer needs to know beside the groups.
+Json viewer_json(const ReportPictures& pictures) {
+    const bool is_half = pictures.embedded == PlanePrecision::float16;
+    return {{"folder", pictures.planes_folder},
+            {"embedded", pictures.embedded.has_value()},
+            {"precision", is_half ? "float16" : "float32"},
+            {"ranges", {{"magnitude", pictures.magnitude_range}, {"sign", pictures.sign_range}}},
+            {"colours",
+             {{"magnitude", map_colours(ErrorKind::magnitude)},
+              {"sign", map_colours(ErrorKind::sign)}}}};
+}
+
+/// Which float values a group's pictures are made of.
+void add_planes(Json& group, const ReportData& data, const ReportPictures& pictures) {
+    const auto shown = pictures.by_group.find(group["group"].get<std::string>());
+    if (shown == pictures.by_group.end()) return;
+    group["cell"] = shown->second.cell;
+    group["plane"] = shown->second.plane;
+    group["reference"] = data.row_of(shown->second.cell)["reference_file"];
+}
+
+std::string embedded_planes(const ReportPictures& pictures) {
+    std::string html;
+    for (const auto& [file, element] : pictures.embedded_references) html += element;
+    for (const auto& [group, shown] : pictures.by_group) html += shown.embedded_plane;
+    return html;
+}
+
+Json data_json(const ReportData& data, const ReportPictures& pictures) {
     Json groups = Json::array();
     for (std::size_t i = 0; i < data.groups.size(); ++i) {
         Json group = summary_json(data.groups[i]);
         group["id"] = "g" + std::to_string(i);
         group["parameters"] = parameters_text(data, data.groups[i]);
         group["variants"] = variants_of(data, data.groups[i]);
+        group["short"] = short_name(data.groups[i]);
         group.erase("cells");
+        add_planes(group, data, pictures);
         groups.push_back(std::move(group));
     }
     return {{"groups", std::move(groups)},
             {"methods", methods_json(data)},
             {"scenes", data.scenes},
+            {"varying", data.varying},
+            {"viewer", viewer_json(pictures)},
             {"graphs", graphs_json(data)},
             {"convergence", convergence_json(data.convergence)},
+            {"relmse_decimals", data.relmse_decimals},
             {"time_decimals", data.time_decimals}};
 }
 
 std::string legend_remark(const std::string& method) {
     if (method == "path") return " (plain path tracing)";
     return method == "blocky_ceiling" ? " (best of one value per low-res pixel)" : "";
+}
+
+std::string style_text() {
+    std::string text;
+    for (const auto& part : {kReportCss, kMatrixCss, kReproductionCss, kViewerCss}) text += part;
+    return text;
+}
+
+/// Our own, in the order in which they build on each other.
+std::string scripts_html() {
+    std::string html;
+    for (const auto& part : {kReportChartsJs, kConvergenceJs, kMatrixJs, kTableJs, kErrorsJs,
+                             kPlanesJs, kPanesJs, kLegendJs, kViewerJs, kReportJs}) {
+        html += "<script>" + script_source(part) + "</script>\n";
+    }
+    return html;
 }
 
 std::string name_of(const ReportData& data) {
@@ -117,32 +186,33 @@ std::string charts_html(const ReportData& data) {
 }
 
 std::string report_page(const ReportData& data, const ReportPictures& pictures) {
-    return fill_page(kReportHtml,
-                     {{"name", escaped(name_of(data))},
-                      {"css", std::string(kReportCss) + std::string(kReproductionCss)},
-                      {"picture_sources", pictures.has_linked ? "data: file: 'self'" : "data:"},
-                      {"facts", facts_html(data)},
-                      {"reproduction", reproduction_html(data)},
-                      {"convergence", convergence_html(data)},
-                      {"graphs", graphs_html(data)},
-                      {"figures", figures_html(data, pictures)},
-                      {"switches", chart_switches_html(data)},
-                      {"legend", legend_html(data)},
-                      {"charts", charts_html(data)},
-                      {"table", table_html(data)},
-                      {"colour_bars", colour_bars_html(pictures)},
-                      {"cards", cards_html(data, pictures)},
-                      {"metrics", metrics_html()},
-                      {"regions", regions_html()},
-                      {"contents", contents_html(data)},
-                      {"references", references_html(data)},
-                      {"failures", failures_html(data)},
-                      {"provenance", provenance_html(data)},
-                      {"data", script_json(data_json(data))},
-                      {"chart_js", script_source(kChartJs)},
-                      {"report_charts_js", script_source(kReportChartsJs)},
-                      {"convergence_js", script_source(kConvergenceJs)},
-                      {"report_js", script_source(kReportJs)}});
+    return fill_page(
+        kReportHtml,
+        {{"name", escaped(name_of(data))},
+         {"css", style_text()},
+         {"picture_sources", pictures.has_linked ? "data: file: 'self'" : "data:"},
+         {"script_sources", pictures.embedded ? "'unsafe-inline'" : "'unsafe-inline' file: 'self'"},
+         {"facts", facts_html(data)},
+         {"reproduction", reproduction_html(data)},
+         {"convergence", convergence_html(data)},
+         {"graphs", graphs_html(data)},
+         {"figures", figures_html(data, pictures)},
+         {"switches", chart_switches_html(data)},
+         {"legend", legend_html(data)},
+         {"charts", charts_html(data)},
+         {"table", table_html(data)},
+         {"colour_bars", colour_bars_html(pictures)},
+         {"cards", cards_html(data, pictures)},
+         {"metrics", metrics_html()},
+         {"regions", regions_html()},
+         {"contents", contents_html(data)},
+         {"references", references_html(data)},
+         {"failures", failures_html(data)},
+         {"provenance", provenance_html(data)},
+         {"data", script_json(data_json(data, pictures))},
+         {"planes", embedded_planes(pictures)},
+         {"chart_js", script_source(kChartJs)},
+         {"scripts", scripts_html()}});
 }
 
 }  // namespace vecino

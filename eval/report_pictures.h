@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The pictures of a report: error maps of all cells in one range, written beside the cells' images;
-// and what the page shows of each group, as data: URLs.
+// and what the page shows of each group, as data: URLs; and the float values behind them.
 #pragma once
 
 #include <map>
@@ -11,6 +11,7 @@
 #include "core/grid.h"
 #include "eval/figure_pictures.h"
 #include "eval/report_data.h"
+#include "eval/report_planes.h"
 
 namespace vecino {
 
@@ -18,6 +19,8 @@ namespace vecino {
 struct GroupPictures {
     std::string cell;
     std::string image, magnitude, sign;
+    std::string plane;           ///< the id of its float values
+    std::string embedded_plane;  ///< their element in the page; empty: they lie beside it
 };
 
 struct ReportPictures {
@@ -28,10 +31,15 @@ struct ReportPictures {
     std::map<std::string, GroupPictures> by_group;  ///< groups of which a cell has an image
     std::map<std::string, std::string> references;  ///< URL by the rows' "reference_file"
     std::map<std::string, std::vector<LabelledPicture>> figures;  ///< that are no mosaic, by id
-    std::map<std::string, Extent> sizes;  ///< of the images of each reference
+    std::map<std::string, Extent> sizes;                     ///< of the images of each reference
+    std::map<std::string, std::string> embedded_references;  ///< elements of the page, by file
+    std::string planes_folder;  ///< of the scripts with float values, as the page names it
+    std::optional<PlanePrecision> embedded;  ///< none: they lie there
 };
 
-/// Writes cells/NAME/error.png and error_signed.png of every cell that has an image.
-ReportPictures make_report_pictures(const ReportData& data);
+/// Writes cells/NAME/error.png and error_signed.png of every cell that has an image; and, unless
+/// they are embedded, planes/cells/NAME.js and planes/references/NAME.js with the float values of
+/// what the page shows. Throws Error(usage) where more would be embedded than a browser opens.
+ReportPictures make_report_pictures(const ReportData& data, const PlaneOptions& options = {});
 
 }  // namespace vecino

@@ -105,8 +105,29 @@ bool is_picture(const std::string& path) {
     return extension == ".png" || extension == ".bmp";
 }
 
-ExitCode run_report(const std::string& directory, const std::string& output,
-                    const std::string& figure) {
+struct ReportArguments {
+    std::string directory, output, figure;
+    bool embed = false;
+    std::string precision;
+};
+
+/// None where the float values are to lie beside the page.
+std::optional<PlanePrecision> embedded_precision(const ReportArguments& arguments) {
+    const bool is_page = !is_picture(arguments.output) && !arguments.output.ends_with(".md");
+    if (!arguments.embed && arguments.precision.empty()) return std::nullopt;
+    if (!arguments.embed)
+        throw Error(ExitCode::usage,
+                    "command line: --embed-precision: found without --embed, allowed: with it");
+    if (!is_page)
+        throw Error(ExitCode::usage, "command line: --embed: found with " + arguments.output +
+                                         ", allowed: with an HTML page");
+    return arguments.precision.empty() ? PlanePrecision::float16
+                                       : parse_precision(arguments.precision);
+}
+
+ExitCode run_report(const ReportArguments& arguments) {
+    const auto& [directory, output, figure, embed, precision] = arguments;
+    const std::optional<PlanePrecision> embedded = embedded_precision(arguments);
     if (!figure.empty() && !is_picture(output))
         throw Error(ExitCode::usage,
                     "command line: --figure: found without a picture to write, "
@@ -116,7 +137,7 @@ ExitCode run_report(const std::string& directory, const std::string& output,
         write_report_picture(data, output, figure);
         std::printf("picture: %s\n", output.c_str());
     } else {
-        std::printf("report: %s\n", write_report(data, output).c_str());
+        std::printf("report: %s\n", write_report(data, output, embedded).c_str());
     }
     return ExitCode::ok;
 }
@@ -142,10 +163,7 @@ void add_run_command(CLI::App& app, Action& chosen) {
 }
 
 void add_report_command(CLI::App& app, Action& chosen) {
-    struct Arguments {
-        std::string directory, output, figure;
-    };
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<ReportArguments>();
     CLI::App* const command = app.add_subcommand("report", "write the report of a run again");
     command->add_option("DIR", arguments->directory, "run directory")
         ->required()
@@ -157,11 +175,16 @@ void add_report_command(CLI::App& app, Action& chosen) {
         ->add_option("--figure", arguments->figure,
                      "with -o FILE.png: a mosaic of the matrix, by its id")
         ->check(not_empty());
-    command->callback([arguments, &chosen] {
-        chosen = [arguments] {
-            return run_report(arguments->directory, arguments->output, arguments->figure);
-        };
-    });
+    command->add_flag("--embed", arguments->embed,
+                      "put the viewer's float values into the page; default: beside it, in "
+                      "DIR/planes");
+    command
+        ->add_option("--embed-precision", arguments->precision,
+                     "with --embed: float16 (differences from the float32 reference) or float32; "
+                     "default: float16")
+        ->check(not_empty());
+    command->callback(
+        [arguments, &chosen] { chosen = [arguments] { return run_report(*arguments); }; });
 }
 
 std::string number_text(double value, int digits) {

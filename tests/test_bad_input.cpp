@@ -154,6 +154,9 @@ TEST_CASE("mistakes of run and report", "[bad_input]") {
         {"a file as directory", "report old.exr", 4, "old.exr/results.jsonl: cannot be read: Not a directory"},
         {"no results", "report no_rows", 4, "no_rows/results.jsonl: holds no results"},
         {"results that are none", "report broken", 4, "broken/results.jsonl: holds no results"},
+        {"a precision without embedding", "report other --embed-precision float16", 64, "--embed-precision: found without --embed, allowed: with it"},
+        {"a precision that there is not", "report other --embed --embed-precision double", 64, "--embed-precision: found \"double\", allowed: float32, float16"},
+        {"values embedded into a table", "report other --embed -o a.md", 64, "--embed: found with a.md, allowed: with an HTML page"},
         {"half a result", "report other", 4, "other/results.jsonl: row of cell a.path.s1 lacks group"},
     };
     check_mistakes(dir, mistakes);

@@ -57,16 +57,31 @@ const charts = (() => {
         return ticks.filter((_, i) => i % stride === 0).map((value) => ({ value }));
     }
 
+    /// Whether another point in sight is at least as fast and as accurate, and better in one of both.
+    function isDominated(group, canvas) {
+        const where = regionOf(canvas);
+        const [time, accuracy] = [group.time_s, level(group, where).mean];
+        return points.some((g) => {
+            if (g === group || g.scene !== group.scene || hidden.has(g.method) || !level(g, where)) return false;
+            const other = level(g, where).mean;
+            return g.time_s <= time && other >= accuracy && (g.time_s < time || other > accuracy);
+        });
+    }
+
+    const faint = (tone) => `${tone}59`; // 35 %
+
     function dataset(style, canvas) {
         const where = regionOf(canvas);
         const isPath = style.method === "path";
         const isLine = ["crossRot", "cross", "star"].includes(style.shape);
         const tone = colour(`--c${style.colour}`);
+        const data = points.filter((g) => g.scene === canvas.dataset.scene && g.method === style.method && level(g, where))
+            .map((g) => ({ x: g.time_s, y: level(g, where).mean, level: level(g, where), group: g, isDominated: isDominated(g, canvas) }));
+        const tones = data.map((p) => (p.isDominated ? faint(tone) : tone));
         return {
             label: style.method,
             hidden: hidden.has(style.method),
-            data: points.filter((g) => g.scene === canvas.dataset.scene && g.method === style.method && level(g, where))
-                .map((g) => ({ x: g.time_s, y: level(g, where).mean, level: level(g, where), group: g })),
+            data,
             pointStyle: style.shape === "triangleDown" ? "triangle" : style.shape,
             rotation: style.shape === "triangleDown" ? 180 : 0,
             radius: isPath ? 7 : 5,
@@ -74,8 +89,8 @@ const charts = (() => {
             hitRadius: 4,
             borderWidth: isLine ? 2.5 : 1,
             hoverBorderWidth: isLine ? 3 : 1,
-            borderColor: isLine ? tone : colour("--page"),
-            backgroundColor: tone,
+            borderColor: isLine ? tones : colour("--page"),
+            backgroundColor: tones,
             tone,
             order: isPath ? 0 : 1,
         };
@@ -171,25 +186,25 @@ const charts = (() => {
     }
 
     /// 95 % intervals; one that is open above ends without a cap.
+    function drawInterval(chart, tone, p) {
+        const { low, high } = p.level;
+        if (low === null) return;
+        line(chart, p.isDominated ? faint(tone) : tone, (ctx, area) => {
+            ctx.lineWidth = 1.25;
+            const x = chart.scales.x.getPixelForValue(p.x);
+            const bottom = chart.scales.y.getPixelForValue(low);
+            const top = high === null ? area.top : chart.scales.y.getPixelForValue(high);
+            ctx.moveTo(x, bottom);
+            ctx.lineTo(x, top);
+            for (const end of high === null ? [bottom] : [bottom, top]) {
+                ctx.moveTo(x - 4, end);
+                ctx.lineTo(x + 4, end);
+            }
+        });
+    }
+
     function drawIntervals(chart) {
-        for (const data of shown(chart)) {
-            line(chart, data.tone, (ctx, area) => {
-                ctx.lineWidth = 1.25;
-                for (const p of data.data) {
-                    const { low, high } = p.level;
-                    if (low === null) continue;
-                    const x = chart.scales.x.getPixelForValue(p.x);
-                    const bottom = chart.scales.y.getPixelForValue(low);
-                    const top = high === null ? area.top : chart.scales.y.getPixelForValue(high);
-                    ctx.moveTo(x, bottom);
-                    ctx.lineTo(x, top);
-                    for (const end of high === null ? [bottom] : [bottom, top]) {
-                        ctx.moveTo(x - 4, end);
-                        ctx.lineTo(x + 4, end);
-                    }
-                }
-            });
-        }
+        for (const data of shown(chart)) data.data.forEach((p) => drawInterval(chart, data.tone, p));
     }
 
     function pointText(p) {
@@ -241,7 +256,9 @@ const charts = (() => {
             },
             onHover: (event, found) => { event.native.target.style.cursor = found.length ? "pointer" : ""; },
             onClick: (_, found, chart) => {
-                if (found.length) location.hash = chart.data.datasets[found[0].datasetIndex].data[found[0].index].group.id;
+                if (!found.length) return;
+                const { group } = chart.data.datasets[found[0].datasetIndex].data[found[0].index];
+                if (!viewer.open(group.id)) location.hash = group.id;
             },
         };
     }
@@ -310,7 +327,7 @@ const charts = (() => {
                     },
                     onClick: (_, found) => {
                         const bar = found.length && find(report.scenes[found[0].datasetIndex], labels[found[0].index]);
-                        if (bar) location.hash = bar.id;
+                        if (bar && !viewer.open(bar.id)) location.hash = bar.id;
                     },
                 },
             }));
