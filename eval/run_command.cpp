@@ -8,6 +8,7 @@
 #include "eval/commands.h"
 #include "eval/progress.h"
 #include "eval/report.h"
+#include "eval/report_exports.h"
 #include "eval/run_matrix.h"
 #include "eval/summary.h"
 
@@ -106,11 +107,12 @@ bool is_picture(const std::string& path) {
 }
 
 ExitCode run_report(const std::string& directory, const std::string& output,
-                    const std::string& figure) {
+                    const std::string& figure, const ReportExports& exports) {
     if (!figure.empty() && !is_picture(output))
         throw Error(ExitCode::usage,
                     "command line: --figure: found without a picture to write, "
                     "allowed: with -o FILE.png or FILE.bmp");
+    if (const auto exported = run_exports(directory, output, exports)) return *exported;
     const ReportData data = read_report_data(directory);
     if (is_picture(output)) {
         write_report_picture(data, output, figure);
@@ -144,6 +146,7 @@ void add_run_command(CLI::App& app, Action& chosen) {
 void add_report_command(CLI::App& app, Action& chosen) {
     struct Arguments {
         std::string directory, output, figure;
+        ReportExports exports;
     };
     auto arguments = std::make_shared<Arguments>();
     CLI::App* const command = app.add_subcommand("report", "write the report of a run again");
@@ -151,15 +154,18 @@ void add_report_command(CLI::App& app, Action& chosen) {
         ->required()
         ->check(not_empty());
     command->add_option("-o", arguments->output,
-                        "HTML file; .md: tables alone; .png: time against accuracy, or a figure; "
+                        "HTML file; .md: tables alone; .csv, .jsonl, .tex: results over seeds; "
+                        ".png: time against accuracy, or a figure; FOLDER.cdb: a Cinema database; "
                         "default: DIR/report.html");
     command
         ->add_option("--figure", arguments->figure,
                      "with -o FILE.png: a mosaic of the matrix, by its id")
         ->check(not_empty());
+    add_export_options(*command, arguments->exports);
     command->callback([arguments, &chosen] {
         chosen = [arguments] {
-            return run_report(arguments->directory, arguments->output, arguments->figure);
+            return run_report(arguments->directory, arguments->output, arguments->figure,
+                              arguments->exports);
         };
     });
 }
