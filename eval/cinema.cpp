@@ -114,12 +114,9 @@ class Table {
 void add_parameters(const Rows& rows, Table& table) {
     std::map<std::string, std::set<Json>> values;
     for (const Json* row : rows) {
-        for (const auto& [name, value] : row->at("params").items()) values[name];
+        for (const auto& [name, value] : row->at("params").items()) values[name].insert(value);
     }
-    for (auto& [name, found] : values) {
-        for (const Json* row : rows) found.insert(row->at("params").value(name, Json()));
-    }
-    const std::set<std::string> apart{"scene", "method", "seed"};
+    const std::set<std::string> apart{"scene", "method", "seed", "spp_asked"};
     table.add("scene", [](const Json& row) { return row["scene"]; });
     table.add("method", [](const Json& row) { return row["method"]; });
     for (const auto& [name, found] : values) {
@@ -168,7 +165,6 @@ void add_measurements(Table& table) {
         });
     }
     table.add("status", [](const Json& row) { return row["status"]; });
-    table.add("cell", [](const Json& row) { return row["cell"]; });
 }
 
 /// A column of files, where they stand in the database, and where the run has them.

@@ -13,7 +13,7 @@
 namespace vecino {
 
 /// The text of data.csv: first the parameters that differ among the rows, then what was measured,
-/// then the cell's name, then columns FILE, FILE_... with paths relative to the database. All
+/// then columns FILE, FILE_... with paths relative to the database, which hold the cell's name. All
 /// values of a column have one type; what was not measured, or is no parameter of the cell's
 /// method, is empty; metrics of a cell that failed are NaN. Names of columns are letters, digits
 /// and _ alone, which viewers use as identifiers. Columns without a value are left out. A file

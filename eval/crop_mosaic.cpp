@@ -220,11 +220,15 @@ Layout layout_of(const Block& block, const MosaicOptions& options) {
     return layout;
 }
 
-/// Pixels stay squares where a picture is enlarged.
+/// Pixels stay squares where a picture is enlarged so far that they are seen.
 void draw_part(Grid<glm::u8vec3>& canvas, Grid<glm::u8vec3>& picture, const Crop& part,
                const cv::Rect& place) {
     const cv::Mat source = view(picture)({part.x, part.y, part.width, part.height});
-    const int method = place.width < part.width ? cv::INTER_AREA : cv::INTER_NEAREST;
+    const bool is_reduced = place.width < part.width;
+    const bool is_large = place.width >= 2 * part.width;
+    const int method = is_reduced ? cv::INTER_AREA
+                       : is_large ? cv::INTER_NEAREST
+                                  : cv::INTER_LINEAR;
     cv::Mat target = view(canvas)(place);
     cv::resize(source, target, place.size(), 0, 0, method);
 }

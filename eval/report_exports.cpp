@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/report_exports.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "core/image_io.h"
 #include "eval/cell_vti.h"
@@ -26,6 +28,17 @@ bool is_picture(const std::string& path) {
     return extension == ".png" || extension == ".bmp";
 }
 
+using TableText = std::string (*)(const ReportData&);
+
+/// By the extension of a path; null where it is that of no table.
+TableText table_of(const std::string& path) {
+    const std::string extension = extension_of(path);
+    if (extension == ".csv") return summary_csv;
+    if (extension == ".jsonl") return summary_jsonl;
+    if (extension == ".tex") return summary_latex;
+    return nullptr;
+}
+
 [[noreturn]] void misplaced(const std::string& flag, const std::string& allowed) {
     throw Error(ExitCode::usage, "command line: " + flag + ": found without " + allowed +
                                      ", allowed: with " + allowed);
@@ -36,9 +49,10 @@ void require_sound(const std::string& output, const ReportExports& exports) {
     if (exports.mosaic && !is_mosaic) misplaced("--mosaic", "-o FILE.png or FILE.bmp");
     if (!exports.crops.empty() && !is_mosaic) misplaced("--crop", "--mosaic");
     if (!exports.metrics.empty() && !is_mosaic) misplaced("--metric", "--mosaic");
-    const bool reads_only = is_mosaic || exports.vti || extension_of(output) == ".cdb";
+    const bool reads_only =
+        is_mosaic || exports.vti || extension_of(output) == ".cdb" || table_of(output) != nullptr;
     if (!exports.only.empty() && !reads_only)
-        misplaced("--only", "--mosaic, --vti or -o FOLDER.cdb");
+        misplaced("--only", "--mosaic, --vti or -o FILE.csv, FILE.jsonl, FILE.tex or FOLDER.cdb");
 }
 
 void write_mosaic(const ReportData& data, const std::string& output, const ReportExports& exports) {
@@ -61,17 +75,21 @@ void write_vtis(const ReportData& data, const std::string& only) {
     std::printf("%zu cells: %s\n", written, path_of("*").c_str());
 }
 
-/// Whether a table was asked for, and written.
-bool write_table(const ReportData& data, const std::string& output) {
-    const std::string extension = extension_of(output);
-    std::string (*const table)(const ReportData&) = extension == ".csv"     ? summary_csv
-                                                    : extension == ".jsonl" ? summary_jsonl
-                                                    : extension == ".tex"   ? summary_latex
-                                                                            : nullptr;
-    if (table == nullptr) return false;
-    write_text_file(output, table(data));
+/// Groups of which a cell is asked for; they stay means over all of their seeds.
+void keep_groups(ReportData& data, const std::string& only) {
+    std::set<std::string> asked;
+    for (const nlohmann::json* row : selected_rows(data, only)) asked.insert((*row)["group"]);
+    std::erase_if(data.groups,
+                  [&](const GroupSummary& group) { return !asked.contains(group.group); });
+    std::erase_if(data.scenes, [&](const std::string& scene) {
+        return std::ranges::find(data.groups, scene, &GroupSummary::scene) == data.groups.end();
+    });
+}
+
+void write_table(ReportData data, const std::string& output, const std::string& only) {
+    keep_groups(data, only);
+    write_text_file(output, table_of(output)(data));
     std::printf("table: %s\n", output.c_str());
-    return true;
 }
 
 }  // namespace
@@ -97,26 +115,27 @@ void add_export_options(CLI::App& report, ReportExports& exports) {
         ->check(not_empty());
     report
         .add_option("--only", exports.only,
-                    "with --mosaic, --vti and -o FOLDER.cdb: cells whose name matches this regular "
-                    "expression")
+                    "with --mosaic, --vti, a table or -o FOLDER.cdb: cells whose name matches this "
+                    "regular expression")
         ->check(not_empty());
 }
 
 std::optional<ExitCode> run_exports(const std::string& directory, const std::string& output,
                                     const ReportExports& exports) {
     require_sound(output, exports);
-    const std::string extension = extension_of(output);
-    const bool is_table = extension == ".csv" || extension == ".jsonl" || extension == ".tex";
-    if (!is_table && !exports.vti && !exports.mosaic && extension != ".cdb") return std::nullopt;
+    const bool is_database = extension_of(output) == ".cdb";
+    const bool is_table = table_of(output) != nullptr;
+    if (!is_table && !is_database && !exports.vti && !exports.mosaic) return std::nullopt;
     const ReportData data = read_report_data(directory);
-    if (extension == ".cdb") {
+    if (is_database) {
         write_cinema(data, selected_rows(data, exports.only), output, exports.vti);
         std::printf("Cinema database: %s\n", output.c_str());
         return ExitCode::ok;
     }
     if (exports.vti) write_vtis(data, exports.only);
     if (exports.mosaic) write_mosaic(data, output, exports);
-    const bool is_report = !output.empty() && !write_table(data, output) && !exports.mosaic;
+    if (is_table) write_table(data, output, exports.only);
+    const bool is_report = !output.empty() && !is_table && !exports.mosaic;
     return is_report ? std::nullopt : std::optional(ExitCode::ok);
 }
 

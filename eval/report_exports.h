@@ -16,8 +16,8 @@ namespace vecino {
 struct ReportExports {
     bool vti = false;
     bool mosaic = false;
-    std::string only;
-    std::vector<std::string> crops, metrics;
+    std::string only = {};
+    std::vector<std::string> crops = {}, metrics = {};
 };
 
 void add_export_options(CLI::App& report, ReportExports& exports);

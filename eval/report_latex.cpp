@@ -43,14 +43,15 @@ struct Column {
     std::function<Value(const GroupSummary&)> value;
 };
 
-std::string half_width(const Estimate& e, int decimals) {
-    if (!e.low || !e.high) return "";
+std::string interval(const Estimate& e, int decimals) {
+    if (!e.low) return "";
+    if (!e.high) return " ($\\geq$ " + number_text(*e.low, decimals) + ")";
     return " $\\pm$ " + number_text(0.5 * (*e.high - *e.low), decimals);
 }
 
 Value estimate(const std::optional<Estimate>& e, int decimals) {
     if (!e) return {};
-    return {number_text(e->mean, decimals) + half_width(*e, decimals), e->mean};
+    return {number_text(e->mean, decimals) + interval(*e, decimals), e->mean};
 }
 
 Value positive(double value, int decimals, const char* unit = "") {
@@ -159,7 +160,7 @@ std::string caption(const ReportData& data, const std::string& scene) {
         label, [](unsigned char c) { return c >= 0x80 || std::isalnum(c) == 0; }, '-');
     return "\\caption{" + latex_text(name) + ", " + latex_text(scene) +
            ": means over seeds with their 95\\,\\% confidence intervals; PSNR of display values "
-           "that are not quantised; time as share of path tracing's.}\\label{tab:" +
+           "that are not quantised; share: of path tracing's time.}\\label{tab:" +
            label + "}";
 }
 
