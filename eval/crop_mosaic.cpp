@@ -88,8 +88,10 @@ std::string value_text(const std::string& metric, const std::optional<double>& v
     if (metric.ends_with("_db")) return number_text(*value, 2);
     if (metric.find("ssim") != std::string::npos) return number_text(*value, 4);
     char text[40];
-    std::snprintf(text, sizeof text, "%.3g", *value);
-    return text;
+    std::snprintf(text, sizeof text, "%#.3g", *value);  // 0.290, to stand below 0.279
+    std::string digits = text;
+    if (digits.ends_with('.')) digits.pop_back();
+    return digits;
 }
 
 bool is_higher_better(const std::string& metric) {

@@ -98,8 +98,10 @@ void add_export_options(CLI::App& report, ReportExports& exports) {
     report.add_flag("--vti", exports.vti,
                     "write cells/CELL/cell.vti with all arrays, for ParaView; with -o FOLDER.cdb: "
                     "into the database");
-    report.add_flag("--mosaic", exports.mosaic,
-                    "with -o FILE.png: the reference and a column per result, labelled");
+    report
+        .add_flag("--mosaic", exports.mosaic,
+                  "with -o FILE.png: the reference and a column per result, labelled")
+        ->excludes("--figure");
     report
         .add_option("--crop", exports.crops,
                     "with --mosaic: a part to enlarge, X,Y,WIDTH,HEIGHT; may be given again")

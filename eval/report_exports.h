@@ -20,6 +20,7 @@ struct ReportExports {
     std::vector<std::string> crops = {}, metrics = {};
 };
 
+/// After the option --figure was added, which --mosaic excludes.
 void add_export_options(CLI::App& report, ReportExports& exports);
 
 /// Writes what the options and the extension of the output (.csv, .jsonl, .tex, .cdb) ask for. None
