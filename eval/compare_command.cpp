@@ -9,7 +9,9 @@
 #include "core/files.h"
 #include "core/image_io.h"
 #include "eval/commands.h"
+#include "eval/comparison_vti.h"
 #include "eval/error_map.h"
+#include "eval/loaded_frame.h"
 #include "eval/metrics.h"
 #include "eval/metrics_json.h"
 #include "eval/render_options.h"
@@ -28,14 +30,21 @@ struct CompareArguments {
 
 void require_map_extension(const std::string& path) {
     const std::string extension = std::filesystem::path(path).extension().string();
-    if (path.empty() || extension == ".png" || extension == ".exr") return;
-    throw Error(ExitCode::usage,
-                "--error-map: found \"" + path + "\", allowed: a name that ends in .png or .exr");
+    if (path.empty() || extension == ".png" || extension == ".exr" || extension == ".vti") return;
+    throw Error(ExitCode::usage, "--error-map: found \"" + path +
+                                     "\", allowed: a name that ends in .png, .exr or .vti");
+}
+
+void write_error_vti(const CompareArguments& arguments, ComparedFrames compared,
+                     const Comparison& comparison) {
+    if (std::filesystem::path(arguments.error_map).extension() != ".vti") return;
+    compared.metrics = comparison_json(comparison);
+    save_comparison_vti(compared, arguments.error_map);
 }
 
 void write_error_map(const CompareArguments& arguments, const Image& test, const Image& reference) {
     const std::string& path = arguments.error_map;
-    if (path.empty()) return;
+    if (path.empty() || std::filesystem::path(path).extension() == ".vti") return;
     if (std::filesystem::path(path).extension() == ".exr") {
         save_image(difference(test, reference), path);
         return;
@@ -114,22 +123,6 @@ bool limits_hold(const CompareArguments& arguments, const Metrics& m) {
     return hold;
 }
 
-struct Reference {
-    Frame frame;             ///< with the planes that regions are made from, if it has them
-    std::string no_regions;  ///< why its planes could not be read
-};
-
-Reference load_reference(const std::string& path) {
-    try {
-        return {load_frame(path), ""};
-    } catch (const Error& error) {
-        // Other programs' planes may not be what ours are, and comparing needs radiance alone.
-        Reference reference{{}, error.what()};
-        reference.frame.radiance = load_image(path);
-        return reference;
-    }
-}
-
 /// What can be said before the work: a job that cannot end well does not start.
 void require_files(const CompareArguments& arguments) {
     require_map_extension(arguments.error_map);
@@ -145,8 +138,11 @@ std::optional<RegionMap> regions_in(const Frame& reference) {
 
 ExitCode run_compare(const CompareArguments& arguments) {
     require_files(arguments);
-    const Image test = load_image(arguments.test);
-    const Reference loaded = load_reference(arguments.reference);
+    const bool wants_planes = std::filesystem::path(arguments.error_map).extension() == ".vti";
+    const LoadedFrame tested =
+        wants_planes ? load_planes(arguments.test) : load_radiance(arguments.test);
+    const Image& test = tested.frame.radiance;
+    const LoadedFrame loaded = load_planes(arguments.reference);
     const Image& reference = loaded.frame.radiance;
     if (test.size() != reference.size()) {
         throw Error(ExitCode::mismatch, size_mismatch_text(arguments.test, test.size(),
@@ -155,6 +151,8 @@ ExitCode run_compare(const CompareArguments& arguments) {
     const std::optional<RegionMap> regions = regions_in(loaded.frame);
     const Comparison comparison = compare(test, reference, regions ? &*regions : nullptr);
     write_error_map(arguments, test, reference);
+    write_error_vti(arguments, {tested.frame, loaded.frame, regions ? &*regions : nullptr, {}},
+                    comparison);
     if (arguments.json) {
         std::printf("%s\n", comparison_json(comparison).dump().c_str());
     } else {
@@ -165,8 +163,8 @@ ExitCode run_compare(const CompareArguments& arguments) {
                      non_finite_text(arguments, comparison.non_finite).c_str());
         return ExitCode::non_finite;
     }
-    if (!loaded.no_regions.empty())
-        std::fprintf(stderr, "warning: no regions: %s\n", loaded.no_regions.c_str());
+    if (!loaded.no_planes.empty())
+        std::fprintf(stderr, "warning: no regions: %s\n", loaded.no_planes.c_str());
     return limits_hold(arguments, *comparison.metrics) ? ExitCode::ok : ExitCode::quality;
 }
 
@@ -202,7 +200,8 @@ void add_compare_command(CLI::App& app, Action& chosen) {
         ->required();
     command
         ->add_option("--error-map", arguments->error_map,
-                     ".png: a picture with a scale; .exr: test - reference, linear")
+                     ".png: a picture with a scale; .exr: test - reference, linear; .vti: every "
+                     "array, for ParaView")
         ->check(not_empty());
     command
         ->add_option("--error-kind", arguments->error_kind,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -17,7 +18,6 @@ constexpr double kPeak8bit = 255.0;
 constexpr int kSsimWindow = 11;
 constexpr int kSsimBorder = kSsimWindow / 2;
 constexpr double kSsimSigma = 1.5;
-constexpr double kRelmseOffset = 0.01;
 
 NonFinite find_non_finite(const Image& test, const Image& reference) {
     NonFinite found;
@@ -251,6 +251,26 @@ Comparison compare(const Image& test, const Image& reference, const RegionMap* r
 
 std::span<const MetricInfo> all_metrics() {
     return kMetrics;
+}
+
+Grid<float> ssim_values(const Image& test, const Image& reference) {
+    require_comparable(test, reference);
+    // A NaN spreads through the sums of every window that it is in.
+    const auto to_8bit = [](glm::vec3 linear) {
+        const glm::vec3 none(std::numeric_limits<float>::quiet_NaN());
+        return is_finite(linear) ? quantised(display_value(linear)) : none;
+    };
+    const std::vector<cv::Mat> maps = ssim_maps({channel_values(map_pixels(test, to_8bit)),
+                                                 channel_values(map_pixels(reference, to_8bit))});
+    Grid<float> values(test.size(), std::numeric_limits<float>::quiet_NaN());
+    if (maps.empty()) return values;
+    const cv::Mat mean = (maps[0] + maps[1] + maps[2]) / 3;
+    for (int y = 0; y < mean.rows; ++y) {
+        for (int x = 0; x < mean.cols; ++x) {
+            values(x + kSsimBorder, y + kSsimBorder) = static_cast<float>(mean.at<double>(y, x));
+        }
+    }
+    return values;
 }
 
 }  // namespace vecino

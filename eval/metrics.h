@@ -59,6 +59,14 @@ struct MetricInfo {
     std::optional<double> (*value)(const Metrics&);
 };
 
+/// The 0.01 of relmse.
+constexpr double kRelmseOffset = 0.01;
+
+/// The mean over channels of the ssim map: of the window around each pixel. NaN where the window
+/// leaves the image or holds a value that is not finite; else its mean is ssim. Throws
+/// Error(mismatch) when the sizes differ.
+Grid<float> ssim_values(const Image& test, const Image& reference);
+
 /// All metrics, in the order in which they are shown.
 std::span<const MetricInfo> all_metrics();
 

@@ -8,6 +8,7 @@
 #include "eval/commands.h"
 #include "eval/progress.h"
 #include "eval/report.h"
+#include "eval/report_exports.h"
 #include "eval/run_matrix.h"
 #include "eval/summary.h"
 
@@ -109,11 +110,13 @@ struct ReportArguments {
     std::string directory, output, figure;
     bool embed = false;
     std::string precision;
+    ReportExports exports;
 };
 
 /// None where the float values are to lie beside the page.
 std::optional<PlanePrecision> embedded_precision(const ReportArguments& arguments) {
-    const bool is_page = !is_picture(arguments.output) && !arguments.output.ends_with(".md");
+    const std::string extension = std::filesystem::path(arguments.output).extension().string();
+    const bool is_page = extension.empty() || extension == ".html" || extension == ".htm";
     if (!arguments.embed && arguments.precision.empty()) return std::nullopt;
     if (!arguments.embed)
         throw Error(ExitCode::usage,
@@ -126,12 +129,13 @@ std::optional<PlanePrecision> embedded_precision(const ReportArguments& argument
 }
 
 ExitCode run_report(const ReportArguments& arguments) {
-    const auto& [directory, output, figure, embed, precision] = arguments;
+    const auto& [directory, output, figure, embed, precision, exports] = arguments;
     const std::optional<PlanePrecision> embedded = embedded_precision(arguments);
     if (!figure.empty() && !is_picture(output))
         throw Error(ExitCode::usage,
                     "command line: --figure: found without a picture to write, "
                     "allowed: with -o FILE.png or FILE.bmp");
+    if (const auto exported = run_exports(directory, output, exports)) return *exported;
     const ReportData data = read_report_data(directory);
     if (is_picture(output)) {
         write_report_picture(data, output, figure);
@@ -169,7 +173,8 @@ void add_report_command(CLI::App& app, Action& chosen) {
         ->required()
         ->check(not_empty());
     command->add_option("-o", arguments->output,
-                        "HTML file; .md: tables alone; .png: time against accuracy, or a figure; "
+                        "HTML file; .md: tables alone; .csv, .jsonl, .tex: results over seeds; "
+                        ".png: time against accuracy, or a figure; FOLDER.cdb: a Cinema database; "
                         "default: DIR/report.html");
     command
         ->add_option("--figure", arguments->figure,
@@ -183,6 +188,7 @@ void add_report_command(CLI::App& app, Action& chosen) {
                      "with --embed: float16 (differences from the float32 reference) or float32; "
                      "default: float16")
         ->check(not_empty());
+    add_export_options(*command, arguments->exports);
     command->callback(
         [arguments, &chosen] { chosen = [arguments] { return run_report(*arguments); }; });
 }

@@ -7,11 +7,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <set>
 #include <utility>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "eval/csv.h"
 
 namespace vecino {
 namespace {
@@ -21,46 +21,6 @@ void make_folder(const std::string& path) {
     std::filesystem::create_directories(path, error);
     if (error)
         throw Error(ExitCode::file, path + ": cannot make the directory: " + error.message());
-}
-
-/// Nested objects become dotted names; arrays and texts stay one value.
-void flatten_row(const nlohmann::json& value, const std::string& name,
-                 std::map<std::string, std::string>& out) {
-    if (value.is_object()) {
-        for (const auto& [key, member] : value.items()) {
-            flatten_row(member, name.empty() ? key : name + "." + key, out);
-        }
-    } else if (value.is_string()) {
-        out[name] = value.get<std::string>();
-    } else if (!value.is_null()) {
-        out[name] = value.dump();
-    }
-}
-
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
-    return quoted + '"';
-}
-
-std::string csv_text(const std::vector<nlohmann::json>& rows) {
-    std::vector<std::map<std::string, std::string>> flat;
-    std::set<std::string> names;
-    for (const nlohmann::json& row : rows) {
-        flatten_row(row, "", flat.emplace_back());
-        for (const auto& [name, value] : flat.back()) names.insert(name);
-    }
-    names.erase("cell");
-    std::string text = "cell";
-    for (const std::string& name : names) text += "," + csv_field(name);
-    text += "\n";
-    for (auto& row : flat) {
-        text += csv_field(row["cell"]);
-        for (const std::string& name : names) text += "," + csv_field(row[name]);
-        text += "\n";
-    }
-    return text;
 }
 
 }  // namespace
@@ -139,7 +99,7 @@ void RunDirectory::write_results(const std::vector<nlohmann::json>& rows) const 
     std::string lines;
     for (const nlohmann::json& row : rows) lines += row.dump() + "\n";
     write_text_file(file("results.jsonl"), lines);
-    write_text_file(file("results.csv"), csv_text(rows));
+    write_text_file(file("results.csv"), csv_text(rows, "cell"));
 }
 
 }  // namespace vecino

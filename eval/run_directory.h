@@ -5,7 +5,7 @@
 //   statistics.json    noise and bias of each group     equal_time.json  measured budgets
 //   reproduction.json  verdicts, if the matrix holds claims
 //   references/SCENE-HASH.exr .png
-//   cells/CELL/image.exr image.png error.png error_signed.png
+//   cells/CELL/image.exr image.png error.png error_signed.png, and cell.vti if asked for
 //   planes/cells/CELL.js  planes/references/SCENE-HASH.js   float values for the report's viewer
 // One process at a time may write to it. results.jsonl grows by whole lines, so that a killed run
 // loses no finished cell.

@@ -2,21 +2,12 @@
 #include "eval/run_plan.h"
 
 #include <algorithm>
-#include <regex>
 
 #include "core/error.h"
+#include "eval/name_pattern.h"
 
 namespace vecino {
 namespace {
-
-std::regex compile(const std::string& only) {
-    try {
-        return std::regex(only);
-    } catch (const std::regex_error&) {
-        throw Error(ExitCode::usage, "command line: --only: found \"" + only +
-                                         "\", allowed: an ECMAScript regular expression");
-    }
-}
 
 bool runs(CellState state, Rerun rerun) {
     switch (rerun) {
@@ -45,20 +36,16 @@ Rerun parse_rerun(const std::string& text) {
 
 std::vector<PlannedCell> plan_run(const std::vector<Cell>& cells, const RunOptions& options,
                                   const StateOf& state_of) {
-    const std::regex pattern = compile(options.only);
+    const NamePattern pattern(options.only);
     std::vector<PlannedCell> plan;
     bool any = false;
     for (const Cell& cell : cells) {
-        const bool chosen = std::regex_search(cell.name, pattern);
+        const bool chosen = pattern.matches(cell.name);
         const CellState state = state_of(cell);
         plan.push_back({&cell, state, chosen && runs(state, options.rerun)});
         any = any || chosen;
     }
-    if (!any) {
-        throw Error(ExitCode::usage,
-                    "command line: --only: found \"" + options.only +
-                        "\", allowed: an expression that matches a cell (see vecino list cells)");
-    }
+    if (!any) pattern.fail_without_match();
     return plan;
 }
 
