@@ -240,6 +240,17 @@ Image load_image(const std::string& path) {
     return read_planes(source, {&radiance, 1}).radiance;
 }
 
+Image load_image(const std::string& path, const std::array<std::string, 3>& channels) {
+    const Source source = open_source(path);
+    Location radiance{&all_planes().front(), {}};
+    for (std::size_t c = 0; c < 3; ++c) {
+        radiance.channels[c] = channel_index(source.spec, channels[c]);
+        if (radiance.channels[c] < 0)
+            mismatch(source, "no channel " + channels[c], list(source.spec.channelnames));
+    }
+    return read_planes(source, {&radiance, 1}).radiance;
+}
+
 ChannelFile load_header(const std::string& path) {
     const Source source = open_source(path);
     return {size_of(source), metadata_of(source.spec), {}};
