@@ -214,7 +214,7 @@ Metadata metadata_of(const ImageSpec& spec) {
         const std::string name = attribute.name().string();
         if (attribute.type() == TypeDesc::INT) {
             metadata[name] = attribute.get_int();
-        } else if (attribute.type() == TypeDesc::FLOAT) {
+        } else if (attribute.type() == TypeDesc::FLOAT || attribute.type() == TypeDesc::DOUBLE) {
             metadata[name] = attribute.get_float();
         } else if (attribute.type() == TypeDesc::STRING) {
             metadata[name] = attribute.get_string();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/files.h"
 #include "core/image_io.h"
@@ -22,6 +23,7 @@ struct CompareArguments {
     std::string reference;
     std::string error_map;
     std::string error_kind = "magnitude";
+    std::vector<std::string> channels, reference_channels;  ///< empty: R, G, B or Y
     std::optional<double> min_psnr, min_ssim, max_relmse;
     bool json = false;
 };
@@ -119,7 +121,17 @@ struct Reference {
     std::string no_regions;  ///< why its planes could not be read
 };
 
-Reference load_reference(const std::string& path) {
+Image load_colour(const std::string& path, const std::vector<std::string>& channels) {
+    if (channels.empty()) return load_image(path);
+    return load_image(path, {channels[0], channels[1], channels[2]});
+}
+
+Reference load_reference(const std::string& path, const std::vector<std::string>& channels) {
+    if (!channels.empty()) {
+        Reference reference;
+        reference.frame.radiance = load_colour(path, channels);
+        return reference;
+    }
     try {
         return {load_frame(path), ""};
     } catch (const Error& error) {
@@ -145,8 +157,8 @@ std::optional<RegionMap> regions_in(const Frame& reference) {
 
 ExitCode run_compare(const CompareArguments& arguments) {
     require_files(arguments);
-    const Image test = load_image(arguments.test);
-    const Reference loaded = load_reference(arguments.reference);
+    const Image test = load_colour(arguments.test, arguments.channels);
+    const Reference loaded = load_reference(arguments.reference, arguments.reference_channels);
     const Image& reference = loaded.frame.radiance;
     if (test.size() != reference.size()) {
         throw Error(ExitCode::mismatch, size_mismatch_text(arguments.test, test.size(),
@@ -208,6 +220,13 @@ void add_compare_command(CLI::App& app, Action& chosen) {
         ->add_option("--error-kind", arguments->error_kind,
                      "what the picture shows: magnitude, sign")
         ->check(CLI::IsMember({"magnitude", "sign"}));
+    const auto add_channels = [command](const char* flag, std::vector<std::string>& names,
+                                        const char* summary) {
+        command->add_option(flag, names, summary)->delimiter(',')->expected(3);
+    };
+    add_channels("--channels", arguments->channels,
+                 "the test's channels of red, green and blue, as R,G,B");
+    add_channels("--reference-channels", arguments->reference_channels, "the reference's");
     const auto add_limit = [command](const char* flag, std::optional<double>& limit,
                                      const char* summary) {
         command->add_option(flag, limit, summary)->check(finite_number());
