@@ -214,7 +214,7 @@ Metadata metadata_of(const ImageSpec& spec) {
         const std::string name = attribute.name().string();
         if (attribute.type() == TypeDesc::INT) {
             metadata[name] = attribute.get_int();
-        } else if (attribute.type() == TypeDesc::FLOAT) {
+        } else if (attribute.type() == TypeDesc::FLOAT || attribute.type() == TypeDesc::DOUBLE) {
             metadata[name] = attribute.get_float();
         } else if (attribute.type() == TypeDesc::STRING) {
             metadata[name] = attribute.get_string();
@@ -237,6 +237,17 @@ Frame load_frame(const std::string& path) {
 Image load_image(const std::string& path) {
     const Source source = open_source(path);
     const Location radiance = locate_radiance(source);
+    return read_planes(source, {&radiance, 1}).radiance;
+}
+
+Image load_image(const std::string& path, const std::array<std::string, 3>& channels) {
+    const Source source = open_source(path);
+    Location radiance{&all_planes().front(), {}};
+    for (std::size_t c = 0; c < 3; ++c) {
+        radiance.channels[c] = channel_index(source.spec, channels[c]);
+        if (radiance.channels[c] < 0)
+            mismatch(source, "no channel " + channels[c], list(source.spec.channelnames));
+    }
     return read_planes(source, {&radiance, 1}).radiance;
 }
 

@@ -9,6 +9,7 @@
 /// - `.png` `.bmp`: radiance only, clipped to [0,1], sRGB-encoded, 8 bit
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -51,6 +52,10 @@ Frame load_frame(const std::string& path);
 
 /// Reads radiance alone. Throws as load_frame() does.
 Image load_image(const std::string& path);
+
+/// Reads radiance from the channels of these names, as other programs call them. Throws as
+/// load_image() does, Error(mismatch) naming what is there if one of them is not.
+Image load_image(const std::string& path, const std::array<std::string, 3>& channels);
 
 /// Of OpenImageIO: "2.4.7".
 std::string image_library_version();

@@ -30,7 +30,7 @@ void require_option(const std::string& key, const JsonValue& value) {
 }  // namespace
 
 std::vector<std::string_view> cell_keys() {
-    std::vector<std::string_view> keys{"scene", "scheme", "method", "budget"};
+    std::vector<std::string_view> keys{"scene", "scheme", "method", "image", "budget"};
     for (const RenderOption& row : render_options()) keys.push_back(row.name);
     for (const SchemeOption& row : scheme_options()) keys.push_back(row.name);
     return keys;
@@ -41,7 +41,7 @@ std::span<const std::string_view> all_methods() {
 }
 
 void require_cell_value(const std::string& key, const JsonValue& value) {
-    if (key == "scene") {
+    if (key == "scene" || key == "image") {
         (void)value.string();
     } else if (key == "scheme") {
         std::vector<std::string_view> names;
@@ -57,8 +57,11 @@ void require_cell_value(const std::string& key, const JsonValue& value) {
 }
 
 void require_one_kind(const JsonValue& json) {
-    if (json.has("method") && json.has("scheme"))
-        json.fail("both \"method\" and \"scheme\"", "one of them: a cell has either");
+    std::vector<std::string> kinds{"method", "scheme", "image"};
+    std::erase_if(kinds, [&](const std::string& kind) { return !json.has(kind); });
+    if (kinds.size() > 1)
+        json.fail("both \"" + kinds[0] + "\" and \"" + kinds[1] + "\"",
+                  "one of them: a cell has either");
 }
 
 std::vector<JsonValue> listed(const std::string& key, const JsonValue& value) {

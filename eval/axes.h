@@ -16,7 +16,8 @@ namespace vecino {
 /// Values by key. Refers to the document that it was read from.
 using Axes = std::map<std::string, std::vector<JsonValue>>;
 
-/// "scene", "scheme", "method", "budget" and every row of the option tables of renders and schemes.
+/// "scene", "scheme", "method", "image", "budget" and every row of the option tables of renders and
+/// schemes.
 std::vector<std::string_view> cell_keys();
 
 /// Ways to make an image that are no scheme: they render. Allowed values of "method".
@@ -25,7 +26,7 @@ std::span<const std::string_view> all_methods();
 /// Throws Error(usage) unless the value may stand at that key. Precondition: key is a cell key.
 void require_cell_value(const std::string& key, const JsonValue& value);
 
-/// Throws Error(usage) if an object of cell keys has both "method" and "scheme".
+/// Throws Error(usage) if an object of cell keys has two of "method", "scheme" and "image".
 void require_one_kind(const JsonValue& json);
 
 /// An object of cell keys, each with one value or an array of several, all of them checked.

@@ -17,9 +17,9 @@ constexpr double kRepeatBelow_s = 0.5;
 
 /// What the cells of a frame share.
 struct CellInput {
-    const Render* traced = nullptr;  ///< times are medians; null for ceilings
+    const Matrix* matrix = nullptr;
+    const Render* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
-    int repeat = 1;  ///< timings of the reconstruction, unless it takes long
 };
 
 /// Makes the cell's image, saves it in the run directory and returns "status", "metrics", "time_s"

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/files.h"
 #include "core/image_io.h"
@@ -24,6 +25,7 @@ struct CompareArguments {
     std::string reference;
     std::string error_map;
     std::string error_kind = "magnitude";
+    std::vector<std::string> channels, reference_channels;  ///< empty: R, G, B or Y
     std::optional<double> min_psnr, min_ssim, max_relmse;
     bool json = false;
 };
@@ -123,6 +125,15 @@ bool limits_hold(const CompareArguments& arguments, const Metrics& m) {
     return hold;
 }
 
+/// Whose channels are named has no planes of ours.
+LoadedFrame load_with(const std::string& path, const std::vector<std::string>& channels,
+                      bool wants_planes) {
+    if (channels.empty()) return wants_planes ? load_planes(path) : load_radiance(path);
+    LoadedFrame loaded;
+    loaded.frame.radiance = load_image(path, {channels[0], channels[1], channels[2]});
+    return loaded;
+}
+
 /// What can be said before the work: a job that cannot end well does not start.
 void require_files(const CompareArguments& arguments) {
     require_map_extension(arguments.error_map);
@@ -139,10 +150,9 @@ std::optional<RegionMap> regions_in(const Frame& reference) {
 ExitCode run_compare(const CompareArguments& arguments) {
     require_files(arguments);
     const bool wants_planes = std::filesystem::path(arguments.error_map).extension() == ".vti";
-    const LoadedFrame tested =
-        wants_planes ? load_planes(arguments.test) : load_radiance(arguments.test);
+    const LoadedFrame tested = load_with(arguments.test, arguments.channels, wants_planes);
     const Image& test = tested.frame.radiance;
-    const LoadedFrame loaded = load_planes(arguments.reference);
+    const LoadedFrame loaded = load_with(arguments.reference, arguments.reference_channels, true);
     const Image& reference = loaded.frame.radiance;
     if (test.size() != reference.size()) {
         throw Error(ExitCode::mismatch, size_mismatch_text(arguments.test, test.size(),
@@ -207,6 +217,13 @@ void add_compare_command(CLI::App& app, Action& chosen) {
         ->add_option("--error-kind", arguments->error_kind,
                      "what the picture shows: magnitude, sign")
         ->check(CLI::IsMember({"magnitude", "sign"}));
+    const auto add_channels = [command](const char* flag, std::vector<std::string>& names,
+                                        const char* summary) {
+        command->add_option(flag, names, summary)->delimiter(',')->expected(3);
+    };
+    add_channels("--channels", arguments->channels,
+                 "the test's channels of red, green and blue, as R,G,B");
+    add_channels("--reference-channels", arguments->reference_channels, "the reference's");
     const auto add_limit = [command](const char* flag, std::optional<double>& limit,
                                      const char* summary) {
         command->add_option(flag, limit, summary)->check(finite_number());

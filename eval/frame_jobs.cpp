@@ -8,9 +8,16 @@
 namespace vecino {
 namespace {
 
+/// Whether a frame of ours is traced for the cell.
+bool reads_frame(const Cell& cell) {
+    if (cell.kind == CellKind::image) return cell.image->reads_frame();
+    return cell.kind != CellKind::blocky_ceiling;
+}
+
 /// Ceilings of one reference stand together: it is all that is traced for them. A measured budget
 /// shares no frame with another, whatever stands for it until it is measured: estimates count both.
 std::string job_key(const Cell& cell) {
+    if (cell.kind == CellKind::image) return cell.name;
     const std::string measured = cell.budget == Budget::equal_time ? " measured" : "";
     if (cell.kind != CellKind::blocky_ceiling)
         return frame_json(cell.scene, cell.settings).dump() + measured;
@@ -34,7 +41,7 @@ std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan) {
         const Cell& cell = *planned.cell;
         const auto [entry, is_new] = by_key.try_emplace(job_key(cell), jobs.size());
         if (is_new) {
-            jobs.push_back({{}, cell.settings, cell.kind != CellKind::blocky_ceiling});
+            jobs.push_back({{}, cell.settings, reads_frame(cell)});
             jobs.back().settings.planes = {};
         }
         FrameJob& job = jobs[entry->second];
@@ -46,6 +53,11 @@ std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan) {
 
 Planes planes_read_by(const Cell& cell) {
     Planes planes{Plane::radiance};
+    if (cell.kind == CellKind::image) {
+        for (const PlaneInfo& info : all_planes()) {
+            if (info.plane != Plane::variance) planes.add(info.plane);  // which would cost samples
+        }
+    }
     if (cell.scheme == nullptr) return planes;
     planes.add(cell.scheme->needs);
     if (cell.scheme->needs.has(Plane::position)) planes.add(Plane::id);  // tells misses apart

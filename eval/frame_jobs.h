@@ -12,7 +12,8 @@
 
 namespace vecino {
 
-/// A frame and the cells that read it; or ceilings, which need no frame but their reference.
+/// A frame and the cells that read it; or cells that need none: ceilings, which need their
+/// reference alone, and images from elsewhere.
 struct FrameJob {
     std::vector<const Cell*> cells;
     RenderSettings settings;

@@ -43,6 +43,32 @@ Extent low_size(const RenderSettings& settings) {
     return reduced(settings.size, settings.reduction);
 }
 
+/// What decides the ceiling: all that decides the reference, and the blocks.
+bool decides_ceiling(std::string_view option) {
+    return option == "size" || option == "reduction" || option == "max_depth";
+}
+
+/// Of an image from elsewhere that rebuilds a frame of ours, all that decides the frame.
+bool reads(const ImageSource& image, std::string_view option) {
+    if (option == "size")
+        return image.reads_frame() || image.reads("width") || image.reads("height");
+    return image.reads_frame() || image.reads(option);
+}
+
+bool decides(const Cell& cell, std::string_view option) {
+    switch (cell.kind) {
+        case CellKind::blocky_ceiling:
+            return decides_ceiling(option);
+        case CellKind::image:
+            return reads(*cell.image, option);
+        case CellKind::path:
+            return option != "reduction";
+        case CellKind::scheme:
+            break;
+    }
+    return true;
+}
+
 class Expansion {
   public:
     explicit Expansion(const Matrix& matrix)
@@ -82,9 +108,14 @@ class Expansion {
     /// What an include does not name, it takes from the axes.
     void add_include(Axes axes, const JsonValue& extra) {
         const Axes own = read_axes(extra);
-        if (own.contains("method"))
-            std::erase_if(axes, [](const auto& axis) { return is_scheme_key(axis.first); });
-        if (own.contains("scheme")) axes.erase("method");
+        const bool is_image = own.contains("image");
+        if (own.contains("method") || is_image) {
+            std::erase_if(axes, [&](const auto& axis) {
+                return is_scheme_key(axis.first) && !(is_image && axis.first == "reduction");
+            });
+        }
+        if (own.contains("scheme") || is_image) axes.erase("method");
+        if (own.contains("scheme") || own.contains("method")) axes.erase("image");
         for (const auto& [key, values] : own) axes.insert_or_assign(key, values);
         for_each_assignment(axes, [&](const Assignment& assignment) { add(assignment); });
     }
@@ -97,6 +128,7 @@ class Expansion {
     }
 
     void add(const Assignment& assignment) {
+        if (const auto image = value(assignment, "image")) return add_image(assignment, *image);
         Cell path = make_cell(assignment, CellKind::path);
         set_name(path, assignment);
         path.against = path.group;
@@ -116,6 +148,19 @@ class Expansion {
         push(std::move(cell));
     }
 
+    void add_image(const Assignment& assignment, const JsonValue& name) {
+        Cell cell = make_cell(assignment, CellKind::image);
+        cell.image = matrix_.images.at(name.string());
+        Assignment read = assignment;
+        std::erase_if(read, [&](const auto& entry) { return !reads(*cell.image, entry.first); });
+        if (!reads(*cell.image, "seed")) cell.settings.seed = RenderSettings{}.seed;
+        cell.group = stem(cell.scene) + "." + cell.method();
+        if (read.contains("reduction")) append_render_slugs(cell.group, read, {"reduction"});
+        append_render_slugs(cell.group, read);
+        cell.name = cell.group + ".s" + std::to_string(cell.settings.seed);
+        push(std::move(cell));
+    }
+
     void push_ceiling(const Assignment& assignment) {
         Cell ceiling = make_cell(assignment, CellKind::blocky_ceiling);
         ceiling.group = stem(ceiling.scene) + "." + ceiling.method();
@@ -131,8 +176,9 @@ class Expansion {
         const auto scene = value(assignment, "scene");
         if (!scene)
             json_.at("axes").fail("no key \"scene\"", "\"scene\" among the axes or in fixed");
-        const auto folder = std::filesystem::path(matrix_.file).parent_path();
-        cell.scene = (folder / scene->string()).lexically_normal().string();
+        cell.scene = (std::filesystem::path(folder_of(matrix_)) / scene->string())
+                         .lexically_normal()
+                         .string();
         for (const RenderOption& row : render_options()) {
             if (row.name == "reduction" && kind == CellKind::path) continue;
             if (const auto given = value(assignment, std::string(row.name)))
@@ -206,11 +252,6 @@ class Expansion {
     std::map<std::string, std::size_t> scene_order_;
 };
 
-/// What decides the ceiling: all that decides the reference, and the blocks.
-bool decides_ceiling(std::string_view option) {
-    return option == "size" || option == "reduction" || option == "max_depth";
-}
-
 }  // namespace
 
 std::string stem(const std::string& path) {
@@ -219,15 +260,19 @@ std::string stem(const std::string& path) {
 
 std::string Cell::method() const {
     if (kind == CellKind::blocky_ceiling) return "blocky_ceiling";
+    if (kind == CellKind::image) return image->name;
     return kind == CellKind::path ? "path" : std::string(scheme->name);
 }
 
 nlohmann::json Cell::parameters_json() const {
     nlohmann::json json{{"scene", scene}, {"method", method()}};
     for (const RenderOption& row : render_options()) {
-        if (kind == CellKind::blocky_ceiling && !decides_ceiling(row.name)) continue;
-        if (kind == CellKind::path && row.name == "reduction") continue;
-        json[std::string(row.name)] = row.get(settings);
+        if (decides(*this, row.name)) json[std::string(row.name)] = row.get(settings);
+    }
+    if (kind == CellKind::image) {
+        json["image"] = image->json;
+        if (json.contains("spp")) json["spp_asked"] = spp_asked;
+        return json;
     }
     if (kind == CellKind::blocky_ceiling) return json;
     json["spp_asked"] = spp_asked;
@@ -241,7 +286,7 @@ nlohmann::json Cell::parameters_json() const {
 }
 
 double Cell::samples_ratio() const {
-    if (kind == CellKind::blocky_ceiling) return 0;
+    if (kind == CellKind::blocky_ceiling || kind == CellKind::image) return 0;
     const auto full = static_cast<double>(settings.size.area());
     const auto low = static_cast<double>(low_size(settings).area());
     return static_cast<double>(settings.spp) * low / (static_cast<double>(spp_asked) * full);
@@ -249,6 +294,22 @@ double Cell::samples_ratio() const {
 
 std::vector<Cell> expand(const Matrix& matrix) {
     return Expansion(matrix).run();
+}
+
+bool needs_scene(const Matrix& matrix, const Cell& cell) {
+    if (cell.kind != CellKind::image || matrix.reference_source == nullptr) return true;
+    return cell.image->reads_frame() || cell.image->reads("scene_file");
+}
+
+std::string folder_of(const Matrix& matrix) {
+    return std::filesystem::path(matrix.file).parent_path().string();
+}
+
+std::string sourced_path(const Matrix& matrix, const std::string& file,
+                         const Placeholders& values) {
+    return (std::filesystem::path(folder_of(matrix)) / fill_template(file, values))
+        .lexically_normal()
+        .string();
 }
 
 RenderSettings reference_settings(const Matrix& matrix, const Cell& cell) {

@@ -4,12 +4,15 @@
 // matrix may extend another one and then says only what differs.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/render.h"
 #include "eval/budget.h"
+#include "eval/image_source.h"
 #include "filters/schemes.h"
 
 namespace vecino {
@@ -18,24 +21,27 @@ enum class CellKind {
     path,            ///< plain path tracing of every pixel
     scheme,          ///< a low-resolution frame, rebuilt
     blocky_ceiling,  ///< the best that is constant per low-resolution pixel, from the reference
+    image,           ///< one that vecino does not make: a file, or what a command makes
 };
 
 /// One thing to measure: a scheme with its parameters on a scene, plain path tracing that it is
-/// held against, or the limit of what such schemes can reach.
+/// held against, the limit of what such schemes can reach, or an image from elsewhere.
 struct Cell {
     std::string name;     ///< e.g. cornell_sphere.distance3d_normal.f2.w7.s1
     std::string group;    ///< the name without its seed: cells of a group are averaged
     std::string against;  ///< the group of path tracing that its time is a share of; may be empty
-    std::string scene;    ///< path of the scene file
+    std::string scene;    ///< path of the scene file; of images that need none, any name
     CellKind kind = CellKind::path;
-    const Scheme* scheme = nullptr;  ///< null unless it is a scheme
+    const Scheme* scheme = nullptr;            ///< null unless it is a scheme
+    std::shared_ptr<const ImageSource> image;  ///< null unless it is an image from elsewhere
     Budget budget = Budget::same_spp;
     int spp_asked =
         0;  ///< of path tracing at full resolution; settings.spp is what the budget gave
     SchemeParameters parameters;
     RenderSettings settings;  ///< of the frame that the cell reads
 
-    [[nodiscard]] std::string method() const;  ///< the scheme's name, "path" or "blocky_ceiling"
+    /// The scheme's or the image source's name, "path" or "blocky_ceiling".
+    [[nodiscard]] std::string method() const;
     /// Everything that decides the result, for results.jsonl and for telling a finished cell from a
     /// stale one.
     [[nodiscard]] nlohmann::json parameters_json() const;
@@ -48,6 +54,9 @@ struct Matrix {
     std::string file;
     nlohmann::json document;  ///< checked, with what it extends
     RenderSettings reference;
+    /// Held against instead, where the matrix names a file.
+    std::shared_ptr<const ImageSource> reference_source;
+    std::map<std::string, std::shared_ptr<const ImageSource>> images;  ///< by name
     int repeat = 1;  ///< timings of a stage that takes under 0.5 s; the median counts
 };
 
@@ -57,6 +66,15 @@ Matrix load_matrix(const std::string& path);
 
 /// All cells, path tracing and ceilings included, in a fixed order with unique names.
 std::vector<Cell> expand(const Matrix& matrix);
+
+/// Whether the cell needs its scene: all but images from elsewhere that are held against a file.
+bool needs_scene(const Matrix& matrix, const Cell& cell);
+
+/// The folder that paths in a matrix start from; empty for this one.
+std::string folder_of(const Matrix& matrix);
+
+/// A path from a template of the matrix.
+std::string sourced_path(const Matrix& matrix, const std::string& file, const Placeholders& values);
 
 /// Settings of the reference that a cell is held against.
 RenderSettings reference_settings(const Matrix& matrix, const Cell& cell);

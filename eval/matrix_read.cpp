@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::string_view kReferenceKeys[] = {"spp", "light_sampling", "sampler", "seed"};
-constexpr std::string_view kParts[] = {"axes", "fixed", "reference", "measure", "reproduction"};
+constexpr std::string_view kParts[] = {"axes",      "fixed",   "images",
+                                       "reference", "measure", "reproduction"};
 
 RenderSettings read_reference(const JsonValue& json) {
     json.require_keys(kReferenceKeys);
@@ -27,6 +28,38 @@ RenderSettings read_reference(const JsonValue& json) {
         if (known && json.has(row.name)) row.set(settings, json.at(row.name));
     }
     return settings;
+}
+
+void read_reference(const JsonValue& json, Matrix& matrix) {
+    if (json.has("file")) {
+        matrix.reference_source = std::make_shared<ImageSource>(read_reference_source(json));
+    } else {
+        matrix.reference = read_reference(json);
+    }
+}
+
+void read_images(const JsonValue& json, Matrix& matrix) {
+    for (const auto& [name, value] : json.members()) {
+        const bool is_taken =
+            name == "path" || name == "blocky_ceiling" ||
+            std::ranges::find(all_schemes(), name, &Scheme::name) != all_schemes().end();
+        if (is_taken || name.empty() || name.find_first_of("/.") != std::string::npos)
+            value.fail("the name \"" + name + "\"",
+                       "names of no method of vecino's, without dots and slashes");
+        matrix.images[name] = std::make_shared<ImageSource>(read_image_source(name, value));
+    }
+}
+
+/// The images that cells name are there.
+void require_images(const JsonValue& cells, const Matrix& matrix) {
+    if (!cells.has("image")) return;
+    for (const JsonValue& each : listed("image", cells.at("image"))) {
+        if (matrix.images.contains(each.string())) continue;
+        std::string names;
+        for (const auto& [name, source] : matrix.images)
+            names += (names.empty() ? "" : ", ") + name;
+        each.fail(names.empty() ? "a key of \"images\", which is not there" : names);
+    }
 }
 
 int read_repeat(const JsonValue& json) {
@@ -40,12 +73,19 @@ void check_fixed(const JsonValue& json) {
     require_one_kind(json);
 }
 
-void check_cells(const JsonValue& json) {
-    if (json.has("fixed")) check_fixed(json.at("fixed"));
-    (void)read_axes(json.at("axes"));
+void check_cells(const JsonValue& json, const Matrix& matrix) {
+    const auto check_axes = [&](const JsonValue& axes) {
+        (void)read_axes(axes);
+        require_images(axes, matrix);
+    };
+    if (json.has("fixed")) {
+        check_fixed(json.at("fixed"));
+        require_images(json.at("fixed"), matrix);
+    }
+    check_axes(json.at("axes"));
     for (const char* key : {"exclude", "include"}) {
         if (!json.has(key)) continue;
-        for (const JsonValue& each : json.at(key).elements()) (void)read_axes(each);
+        for (const JsonValue& each : json.at(key).elements()) check_axes(each);
     }
 }
 
@@ -55,12 +95,13 @@ Matrix check(Json document, const std::string& file) {
     matrix.document = std::move(document);
     const JsonValue json(matrix.document, file);
     json.require_keys({"$schema", "extends", "name", "axes", "exclude", "include", "fixed",
-                       "reference", "measure", "reproduction"});
+                       "images", "reference", "measure", "reproduction"});
     if (json.has("$schema")) (void)json.at("$schema").string();
     matrix.name = json.at("name").string();
-    matrix.reference = read_reference(json.at("reference"));
+    read_reference(json.at("reference"), matrix);
+    if (json.has("images")) read_images(json.at("images"), matrix);
     if (json.has("measure")) matrix.repeat = read_repeat(json.at("measure"));
-    check_cells(json);
+    check_cells(json, matrix);
     if (json.has("reproduction")) (void)read_reproduction(json);
     return matrix;
 }
@@ -80,6 +121,22 @@ void move_scenes(Json& json, const fs::path& from, const fs::path& to) {
         if (!scene.is_array()) return;
         for (Json& each : scene) each = moved(each);
     }
+}
+
+/// The same for files of images: {NAME} in them stays as it is.
+void move_file(Json& json, const fs::path& from, const fs::path& to) {
+    if (!json.is_object() || !json.contains("file")) return;
+    const fs::path file = (from / json["file"].get<std::string>()).lexically_normal();
+    json["file"] = file.lexically_proximate(to).generic_string();
+}
+
+void move_files(Json& base, const fs::path& from, const fs::path& to) {
+    for (const char* key : {"axes", "fixed", "exclude", "include"}) {
+        if (base.contains(key)) move_scenes(base[key], from, to);
+    }
+    if (base.contains("reference")) move_file(base["reference"], from, to);
+    if (!base.contains("images")) return;
+    for (Json& image : base["images"]) move_file(image, from, to);
 }
 
 /// What the file says, over what it extends: the parts of kParts key by key, the rest as a whole.
@@ -107,9 +164,7 @@ Matrix load(const std::string& path, std::vector<std::string>& opened) {
     if (std::ranges::find(opened, base_path) != opened.end())
         json.at("extends").fail("a matrix that does not lead back to this one");
     Json base = load(base_path, opened).document;
-    for (const char* key : {"axes", "fixed", "exclude", "include"}) {
-        if (base.contains(key)) move_scenes(base[key], fs::path(base_path).parent_path(), folder);
-    }
+    move_files(base, fs::path(base_path).parent_path(), folder);
     return check(merged(std::move(base), own), path);
 }
 

@@ -6,6 +6,7 @@
 #include "core/json_schema.h"
 #include "eval/axes.h"
 #include "eval/budget.h"
+#include "eval/image_source.h"
 #include "eval/render_options.h"
 #include "filters/schemes.h"
 
@@ -38,6 +39,7 @@ constexpr DescribedKey kCellKeys[] = {
     {"scene", optional, "a scene file, from the folder of the matrix", schema_of<kText>},
     {"scheme", optional, "how the large image is rebuilt", scheme_schema},
     {"method", optional, "a render in place of a scheme", method_schema},
+    {"image", optional, "a key of images, in place of a scheme", schema_of<kText>},
     {"budget", optional, "how many samples a low-resolution frame gets", budget_schema},
 };
 
@@ -65,7 +67,10 @@ json axes_schema() {
         property = {{"anyOf", {one, array_schema(one, {1, 0})}},
                     {"description", property["description"]}};
     }
-    schema["not"] = {{"required", {"method", "scheme"}}};
+    schema["not"] = {{"anyOf",
+                      {{{"required", {"method", "scheme"}}},
+                       {{"required", {"method", "image"}}},
+                       {{"required", {"scheme", "image"}}}}}};
     return schema;
 }
 
@@ -73,8 +78,15 @@ json patterns_schema() {
     return array_schema({{"$ref", kAxes}}, {0, 0});
 }
 
+json images_schema() {
+    return {{"type", "object"}, {"additionalProperties", image_source_schema()}};
+}
+
 json reference_schema() {
     json schema{{"type", "object"}, {"additionalProperties", false}};
+    schema["properties"]["file"] = {{"type", "string"}};
+    schema["properties"]["channels"] = array_schema(kText.schema(), {3, 3});
+    schema["dependentRequired"]["channels"] = {"file"};
     for (const std::string key : {"spp", "light_sampling", "sampler", "seed"}) {
         schema["properties"][key] = {{"$ref", kOneValue + key}};
     }
@@ -95,7 +107,9 @@ constexpr DescribedKey kMatrixKeys[] = {
     {"include", optional, "cells beside those of the axes, whose values these replace",
      patterns_schema},
     {"fixed", optional, "values of every cell", cell_schema},
-    {"reference", optional, "the render that cells are held against", reference_schema},
+    {"images", optional, "methods whose images vecino does not make, by name", images_schema},
+    {"reference", optional, "the render, or the file, that cells are held against",
+     reference_schema},
     {"measure", optional, "", [] { return object_schema(kMeasureKeys); }},
     {"reproduction", optional, "what a publication states, to be held against the results",
      reproduction_schema},

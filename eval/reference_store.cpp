@@ -29,7 +29,8 @@ Json own_error(const ReferenceHalves& halves, const RegionMap& regions) {
         if (!metrics || !metrics->psnr_float_db) return nullptr;
         return *metrics->psnr_float_db - 10.0 * std::log10(share);
     };
-    const Comparison found = compare(halves.first.radiance, halves.second, &regions);
+    const Comparison found = compare(halves.first.radiance, halves.second,
+                                     regions.values().empty() ? nullptr : &regions);
     const Json whole = in_db(found.metrics);
     if (whole.is_null()) return nullptr;
     Json json{{"psnr_float_db", whole}, {"regions", Json::object()}};
@@ -41,8 +42,12 @@ Json own_error(const ReferenceHalves& halves, const RegionMap& regions) {
     return json;
 }
 
+RegionMap regions_if_known(const Frame& frame) {
+    return has_region_planes(frame) ? regions_of(frame) : RegionMap();
+}
+
 void save_reference(ReferenceHalves halves, const std::string& path) {
-    const Json error = own_error(halves, regions_of(halves.first));
+    const Json error = own_error(halves, regions_if_known(halves.first));
     Frame& frame = halves.first;
     if (!halves.second.values().empty()) {
         mix(frame.radiance, halves.second, halves.second_weight);
@@ -102,7 +107,7 @@ const StoredReference& ReferenceStore::get(const std::string& key, const std::st
     StoredReference stored{
         std::move(frame.radiance), {}, "references/" + name, kept_error(path + ".json")};
     frame.radiance = Image();
-    stored.regions = regions_of(frame);
+    stored.regions = regions_if_known(frame);
     return references_.emplace(key, std::move(stored)).first->second;
 }
 

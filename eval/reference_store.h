@@ -18,10 +18,11 @@ namespace vecino {
 
 struct StoredReference {
     Image image;
-    RegionMap regions;
-    std::string file;  ///< relative to the run directory, without extension
+    RegionMap regions;  ///< empty where the reference has no planes to make it from
+    std::string file;   ///< relative to the run directory, without extension
     /// Its own error in dB, from how its two halves differ: {"psnr_float_db":, "regions": {"edge":
-    /// {"psnr_float_db":}, ...}}. Null where there is no second half, or the halves are equal.
+    /// {"psnr_float_db":}, ...}}. Null where there is no second half, as in a file, or the halves
+    /// are equal.
     nlohmann::json error;
 };
 

@@ -84,6 +84,7 @@ class Runner {
         for (const FrameJob& job : jobs) {
             const Cell& first = *job.cells.front();
             if (job.traces) result.time_s += job.samples() / rate(first.scene, job.settings);
+            if (matrix_.reference_source != nullptr) continue;
             const RenderSettings reference = reference_settings(matrix_, first);
             if (!references.insert(frame_key(first.scene, reference)).second) continue;
             result.time_s += traced_samples(reference) / rate(first.scene, reference);
@@ -115,9 +116,28 @@ class Runner {
     }
 
     void load_scene_of(const Cell& cell) {
+        if (!needs_scene(matrix_, cell)) {
+            scene_hashes_.try_emplace(cell.scene);  // a name alone
+            return;
+        }
         if (scenes_.contains(cell.scene)) return;
-        scenes_.emplace(cell.scene, load_scene(cell.scene));
+        if (cell.kind != CellKind::image || cell.image->reads_frame() ||
+            matrix_.reference_source == nullptr)
+            scenes_.emplace(cell.scene, load_scene(cell.scene));
         scene_hashes_[cell.scene] = text_hash(read_file(cell.scene));
+    }
+
+    /// Tells states of the file that holds the cell's image; empty where no file does.
+    std::string image_hash(const Cell& cell) const {
+        if (cell.kind != CellKind::image || cell.image->file.empty()) return "";
+        const std::string path =
+            sourced_path(matrix_, cell.image->file, placeholders_of(cell.scene, cell.settings));
+        return std::filesystem::exists(path) ? text_hash(read_file(path)) : "no file";
+    }
+
+    std::string reference_path(const Cell& cell) const {
+        return sourced_path(matrix_, matrix_.reference_source->file,
+                            placeholders_of(cell.scene, cell.settings));
     }
 
     CellState state_of(const Cell& cell) const {
@@ -133,7 +153,8 @@ class Runner {
             return CellState::missing;
         const bool same_program =
             row.value("build", nlohmann::json()) == build_ &&
-            row.value("scene_hash", nlohmann::json()) == scene_hashes_.at(cell.scene);
+            row.value("scene_hash", nlohmann::json()) == scene_hashes_.at(cell.scene) &&
+            row.value("image_hash", "") == image_hash(cell);
         return same_program ? CellState::finished : CellState::stale;
     }
 
@@ -197,6 +218,7 @@ class Runner {
         std::set<std::string> references;
         for (const FrameJob& job : jobs) {
             total += job.samples();
+            if (matrix_.reference_source != nullptr) continue;
             const RenderSettings reference = reference_settings(matrix_, *job.cells.front());
             const std::string key = frame_key(job.cells.front()->scene, reference);
             if (references.insert(key).second) total += traced_samples(reference);
@@ -216,11 +238,16 @@ class Runner {
     }
 
     nlohmann::json reference_json(const Cell& cell) const {
+        if (matrix_.reference_source != nullptr)
+            return {
+                {"file", reference_path(cell)},
+                {"channels", matrix_.reference_source->json.value("channels", nlohmann::json())}};
         const RenderSettings s = reference_settings(matrix_, cell);
         return frame_json(cell.scene, s);
     }
 
     const StoredReference& reference_of(const Cell& cell) {
+        if (matrix_.reference_source != nullptr) return reference_from_file(cell);
         RenderSettings settings = reference_settings(matrix_, cell);
         const std::string key =
             frame_key(cell.scene, settings) + scene_hashes_.at(cell.scene) + build_;
@@ -230,6 +257,15 @@ class Runner {
                 return render_with_progress(cell.scene, half, stem(cell.scene) + " reference")
                     .frame;
             });
+        });
+    }
+
+    const StoredReference& reference_from_file(const Cell& cell) {
+        const std::string path = reference_path(cell);
+        const std::string key = reference_json(cell).dump() + text_hash(read_file(path));
+        return references_.get(key, stem(cell.scene), [&] {
+            return ReferenceHalves{
+                load_sourced_image(*matrix_.reference_source, path).frame, {}, {}, {}, 0};
         });
     }
 
@@ -253,7 +289,7 @@ class Runner {
 
     void run_job(const FrameJob& job) {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
-        CellInput input{nullptr, &reference_of(*job.cells.front()), matrix_.repeat};
+        CellInput input{&matrix_, nullptr, &reference_of(*job.cells.front())};
         Render traced;
         if (job.traces) {
             traced = trace(job);
@@ -275,6 +311,7 @@ class Runner {
                            {"reference_file", input.reference->file},
                            {"reference_error", input.reference->error},
                            {"scene_hash", scene_hashes_.at(cell.scene)},
+                           {"image_hash", image_hash(cell)},
                            {"build", build_},
                            {"host", run_["versions"]["cpu"]}};
         row.update(cell_result(cell, input, directory_));

@@ -51,6 +51,7 @@ bool holds(const std::vector<Json>& values, const Json& value) {
 Selection Selection::read(const JsonValue& json) {
     auto keys = cell_keys();
     std::erase(keys, "scheme");
+    std::erase(keys, "image");
     json.require_keys(keys);
     Selection selection;
     for (const auto& [key, value] : json.members()) {

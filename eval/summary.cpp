@@ -122,6 +122,14 @@ std::string cell_text(const std::optional<Estimate>& e, int digits) {
     return text;
 }
 
+/// 0 stands for a time that is not known.
+std::string time_text(double value, int digits, const char* unit) {
+    if (!(value > 0)) return "-";
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f%s", digits, value, unit);
+    return text;
+}
+
 std::string interval_text(const std::optional<Estimate>& e) {
     if (!e || !e->low || !e->high) return "";
     char text[64];
@@ -203,10 +211,11 @@ std::string summary_table(const std::vector<GroupSummary>& groups) {
     std::string table = padded("cell") + line;
     for (const GroupSummary& g : groups) {
         const auto& interior = g.region_psnr_float_db[region_index(Region::interior)];
-        std::snprintf(line, sizeof line, "  %8s %6s  %8s  %7s  %9s  %9.4f  %6.2f%%\n",
+        std::snprintf(line, sizeof line, "  %8s %6s  %8s  %7s  %9s  %9s  %7s\n",
                       cell_text(g.psnr_float_db, 2).c_str(), interval_text(g.psnr_float_db).c_str(),
                       cell_text(interior, 2).c_str(), cell_text(g.ssim, 4).c_str(),
-                      cell_text(g.relmse, 6).c_str(), g.time_s, 100.0 * g.time_share);
+                      cell_text(g.relmse, 6).c_str(), time_text(g.time_s, 4, "").c_str(),
+                      time_text(100.0 * g.time_share, 2, "%").c_str());
         table += padded(g.group) + line;
     }
     return table;
