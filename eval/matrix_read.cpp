@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/axes.h"
+#include "eval/gate_classes.h"
 #include "eval/matrix.h"
 #include "eval/render_options.h"
 #include "eval/reproduction_spec.h"
@@ -49,21 +50,26 @@ void check_cells(const JsonValue& json) {
     }
 }
 
-Matrix check(Json document, const std::string& file) {
+}  // namespace
+
+Matrix matrix_of(Json document, const std::string& file) {
     Matrix matrix;
     matrix.file = file;
     matrix.document = std::move(document);
     const JsonValue json(matrix.document, file);
     json.require_keys({"$schema", "extends", "name", "axes", "exclude", "include", "fixed",
-                       "reference", "measure", "reproduction"});
+                       "reference", "measure", "gates", "reproduction"});
     if (json.has("$schema")) (void)json.at("$schema").string();
     matrix.name = json.at("name").string();
     matrix.reference = read_reference(json.at("reference"));
     if (json.has("measure")) matrix.repeat = read_repeat(json.at("measure"));
     check_cells(json);
+    (void)read_gate_classes(json);
     if (json.has("reproduction")) (void)read_reproduction(json);
     return matrix;
 }
+
+namespace {
 
 /// Scene paths are relative to the file that they stand in: once they stand in another one, they
 /// have to lead to the same place, and be spelled as one would there, so that excludes match them.
@@ -98,7 +104,7 @@ Json merged(Json base, const Json& own) {
 Matrix load(const std::string& path, std::vector<std::string>& opened) {
     const Json own = parse_json_file(path);
     const JsonValue json(own, path);
-    if (!own.is_object() || !json.has("extends")) return check(own, path);
+    if (!own.is_object() || !json.has("extends")) return matrix_of(own, path);
     (void)json.at("name").string();
     const fs::path folder = fs::path(path).parent_path().lexically_normal();
     const std::string base_path =
@@ -110,7 +116,7 @@ Matrix load(const std::string& path, std::vector<std::string>& opened) {
     for (const char* key : {"axes", "fixed", "exclude", "include"}) {
         if (base.contains(key)) move_scenes(base[key], fs::path(base_path).parent_path(), folder);
     }
-    return check(merged(std::move(base), own), path);
+    return matrix_of(merged(std::move(base), own), path);
 }
 
 }  // namespace
