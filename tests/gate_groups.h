@@ -11,8 +11,7 @@
 namespace vecino {
 
 /// A class that judges one metric.
-inline GateClass class_judging(const std::string& metric, double tolerance_db,
-                               double k_sigma = 3) {
+inline GateClass class_judging(const std::string& metric, double tolerance_db, double k_sigma = 3) {
     GateClass gate;
     gate.name = "class";
     gate.tolerance_db = {{find_gate_metric(metric).value(), tolerance_db}};

@@ -27,22 +27,26 @@ TEST_CASE("the tail of Student's t is Cauchy's at one degree and normal at many"
 }
 
 TEST_CASE("quantiles of Student's t are those of tables", "[distributions]") {
-    const auto [tail, degrees, t] = GENERATE(table<double, double, double>({{0.025, 1, 12.706205},
-                                                                            {0.025, 4, 2.776445},
-                                                                            {0.025, 30, 2.042272},
-                                                                            {0.005, 6, 3.707428},
-                                                                            {0.001, 3, 10.214532},
-                                                                            {0.001, 14, 3.787390},
-                                                                            {0.0005, 20, 3.849516}}));
+    const auto [tail, degrees, t] =
+        GENERATE(table<double, double, double>({{0.025, 1, 12.706205},
+                                                {0.025, 4, 2.776445},
+                                                {0.025, 30, 2.042272},
+                                                {0.005, 6, 3.707428},
+                                                {0.001, 3, 10.214532},
+                                                {0.001, 14, 3.787390},
+                                                {0.0005, 20, 3.849516}}));
     CAPTURE(tail, degrees);
     CHECK(student_quantile(tail, degrees) == Approx(t).epsilon(1e-6));
     CHECK(student_tail(t, degrees) == Approx(tail).epsilon(1e-5));
 }
 
 TEST_CASE("quantiles of Fisher's F are those of tables", "[distributions]") {
-    const auto [tail, a, b, f] = GENERATE(table<double, double, double, double>(
-        {{0.05, 1, 1, 161.4476}, {0.05, 3, 15, 3.287382}, {0.01, 7, 7, 6.992833},
-         {0.05, 10, 20, 2.347878}, {0.01, 4, 2, 99.24937}}));
+    const auto [tail, a, b, f] =
+        GENERATE(table<double, double, double, double>({{0.05, 1, 1, 161.4476},
+                                                        {0.05, 3, 15, 3.287382},
+                                                        {0.01, 7, 7, 6.992833},
+                                                        {0.05, 10, 20, 2.347878},
+                                                        {0.01, 4, 2, 99.24937}}));
     CAPTURE(tail, a, b);
     CHECK(fisher_quantile(tail, {a, b}) == Approx(f).epsilon(1e-5));
 }

@@ -32,8 +32,10 @@ TEST_CASE("a mean may be worse by the tolerance and by what noise explains, and 
     const double noise_db = 4.277 * 0.0791 * std::sqrt(2.0 / 5);
     CHECK(allowed_db == Approx(0.1 + noise_db).epsilon(0.005));
 
-    const Verdict below = judged(group_of(shifted(kThen, -allowed_db + 0.001)), group_of(kThen), gate);
-    const Verdict above = judged(group_of(shifted(kThen, -allowed_db - 0.001)), group_of(kThen), gate);
+    const Verdict below =
+        judged(group_of(shifted(kThen, -allowed_db + 0.001)), group_of(kThen), gate);
+    const Verdict above =
+        judged(group_of(shifted(kThen, -allowed_db - 0.001)), group_of(kThen), gate);
     CHECK(below.outcome == Outcome::pass);
     CHECK(above.outcome == Outcome::fail);
     CHECK(above.margin_db.value() == Approx(-0.001).margin(1e-4));
@@ -74,8 +76,7 @@ TEST_CASE("scatter now does not excuse a mean: it fails itself", "[gate]") {
     CHECK(wild.limit.value() == Approx(factor * wild.baseline.value() + 0.1).epsilon(0.01));
 }
 
-TEST_CASE("noise explains more the fewer seeds there are, and nothing without any",
-          "[gate]") {
+TEST_CASE("noise explains more the fewer seeds there are, and nothing without any", "[gate]") {
     const MetricInfo& psnr = *find_gate_metric("psnr_float_db")->info;
     const double deviation = 0.1;
     double before = 1e9;
@@ -123,11 +124,11 @@ TEST_CASE("an unchanged run passes, and its numbers are counted as identical", "
 }
 
 TEST_CASE("a cell that is missing, failed, stale or not finite fails", "[gate]") {
-    const auto [kind, rule] = GENERATE(table<CellFaultKind, std::string>(
-        {{CellFaultKind::missing, "missing cell"},
-         {CellFaultKind::failed, "failed cell"},
-         {CellFaultKind::stale, "stale cell"},
-         {CellFaultKind::non_finite, "non-finite"}}));
+    const auto [kind, rule] =
+        GENERATE(table<CellFaultKind, std::string>({{CellFaultKind::missing, "missing cell"},
+                                                    {CellFaultKind::failed, "failed cell"},
+                                                    {CellFaultKind::stale, "stale cell"},
+                                                    {CellFaultKind::non_finite, "non-finite"}}));
     GateRun run = run_of({group_of(kThen)});
     const Baseline baseline = baseline_of(run);
     run.groups.front().faults.push_back({"box.mean.s3", kind, "why"});
@@ -171,8 +172,8 @@ TEST_CASE("samples that a budget measured are not gated where they differ", "[ga
 }
 
 TEST_CASE("the worst stands first: facts, then failures by margin, then passes", "[gate]") {
-    GateRun run = run_of({group_of(kThen, "fine"), group_of(kThen, "bad"),
-                          group_of(kThen, "worse"), group_of(kThen, "broken")});
+    GateRun run = run_of({group_of(kThen, "fine"), group_of(kThen, "bad"), group_of(kThen, "worse"),
+                          group_of(kThen, "broken")});
     const Baseline baseline = baseline_of(run);
     run.groups[1] = group_of(shifted(kThen, -2), "bad");
     run.groups[2] = group_of(shifted(kThen, -4), "worse");

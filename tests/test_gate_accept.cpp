@@ -38,7 +38,8 @@ TEST_CASE("a baseline that was written reads back the same, one line per group",
         CHECK(back.groups.at(name).time_s.mean == group.time_s.mean);
     }
     const std::string text = dir.read("b.json");
-    const auto line = text.substr(text.find("  \"a\": "), text.find(",\n  \"b") - text.find("  \"a\": "));
+    const auto line =
+        text.substr(text.find("  \"a\": "), text.find(",\n  \"b") - text.find("  \"a\": "));
     CHECK(line ==
           "  \"a\": {\"seeds\": 4, \"edge.psnr_float_db\": [30.0122, 0.085468], \"p99_error\": "
           "[0.0947301, 0.000931661], \"psnr_float_db\": [30.0122, 0.085468], "
@@ -71,9 +72,9 @@ TEST_CASE("a faulty baseline is named with its place", "[gate]") {
 TEST_CASE("accepting shows old against new and marks what changed", "[gate]") {
     const GateRun old_run = run_of({group_of(kThen, "same"), group_of(kThen, "worse"),
                                     group_of(kThen, "better"), group_of(kThen, "gone")});
-    const GateRun run = run_of({group_of(kThen, "same"), group_of(kNow, "worse"),
-                                group_of({31.0, 31.1, 30.9, 31.05}, "better"),
-                                group_of(kThen, "fresh")});
+    const GateRun run =
+        run_of({group_of(kThen, "same"), group_of(kNow, "worse"),
+                group_of({31.0, 31.1, 30.9, 31.05}, "better"), group_of(kThen, "fresh")});
     const std::optional<Baseline> old = baseline_of(old_run);
     const AcceptPlan plan = plan_accept(run, old, "");
     CHECK(plan.changed == 4);

@@ -75,8 +75,7 @@ TEST_CASE("a faulty gate is named with its place", "[gate]") {
     CHECK(error_text(changed("tolerance_db", {{"psnr", 1}})).find("found \"psnr\", allowed: ") !=
           std::string::npos);
     CHECK(error_text(changed("class", "default")).find("/gates/0/class") != std::string::npos);
-    CHECK(error_text(changed("where", {{"methods", "path"}})).find("methods") !=
-          std::string::npos);
+    CHECK(error_text(changed("where", {{"methods", "path"}})).find("methods") != std::string::npos);
     CHECK(error_text(changed("sigma", 3)).find("sigma") != std::string::npos);
     CHECK(error_text({kPath, kPath}).find("/gates/1/class") != std::string::npos);
     CHECK(error_text(json::array({json::object()})).find("class") != std::string::npos);

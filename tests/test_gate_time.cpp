@@ -12,8 +12,7 @@ namespace {
 
 RunGroup timed(const std::vector<double>& times_s) {
     RunGroup group = group_of(std::vector<double>(times_s.size(), 30.0));
-    for (std::size_t i = 0; i < times_s.size(); ++i)
-        group.rows[i]["time_s"]["total"] = times_s[i];
+    for (std::size_t i = 0; i < times_s.size(); ++i) group.rows[i]["time_s"]["total"] = times_s[i];
     return group;
 }
 
