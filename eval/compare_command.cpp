@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "eval/metrics.h"
 #include "eval/metrics_json.h"
 #include "eval/render_options.h"
+#include "eval/unbiased_compare.h"
 
 namespace vecino {
 namespace {
@@ -22,6 +24,7 @@ struct CompareArguments {
     std::string reference;
     std::string error_map;
     std::string error_kind = "magnitude";
+    std::string test_kind;
     std::optional<double> min_psnr, min_ssim, max_relmse;
     bool json = false;
 };
@@ -155,10 +158,16 @@ ExitCode run_compare(const CompareArguments& arguments) {
     const std::optional<RegionMap> regions = regions_in(loaded.frame);
     const Comparison comparison = compare(test, reference, regions ? &*regions : nullptr);
     write_error_map(arguments, test, reference);
+    const bool tests = arguments.test_kind == "unbiased" && comparison.metrics;
+    std::vector<UnbiasedRule> rules;
+    if (tests) rules = compare_unbiased(arguments.test, arguments.reference);
     if (arguments.json) {
-        std::printf("%s\n", comparison_json(comparison).dump().c_str());
+        nlohmann::json json = comparison_json(comparison);
+        if (tests) json["unbiased"] = unbiased_json(rules);
+        std::printf("%s\n", json.dump().c_str());
     } else {
         print_metrics(comparison);
+        std::printf("%s", unbiased_text(rules).c_str());
     }
     if (!comparison.metrics) {
         std::fprintf(stderr, "error: %s\n",
@@ -167,7 +176,9 @@ ExitCode run_compare(const CompareArguments& arguments) {
     }
     if (!loaded.no_regions.empty())
         std::fprintf(stderr, "warning: no regions: %s\n", loaded.no_regions.c_str());
-    return limits_hold(arguments, *comparison.metrics) ? ExitCode::ok : ExitCode::quality;
+    const bool same_expectation = std::ranges::all_of(rules, &UnbiasedRule::holds);
+    const bool hold = limits_hold(arguments, *comparison.metrics) && same_expectation;
+    return hold ? ExitCode::ok : ExitCode::quality;
 }
 
 /// A limit that is not a number would let everything pass.
@@ -215,6 +226,11 @@ void add_compare_command(CLI::App& app, Action& chosen) {
     add_limit("--min-psnr", arguments->min_psnr, "fail below this psnr_db");
     add_limit("--min-ssim", arguments->min_ssim, "fail below this ssim");
     add_limit("--max-relmse", arguments->max_relmse, "fail above this relmse");
+    command
+        ->add_option("--test", arguments->test_kind,
+                     "unbiased: fail unless both may be of the same expected image; both need the "
+                     "planes variance and count")
+        ->check(CLI::IsMember({"unbiased"}));
     command->add_flag("--json", arguments->json, "print one JSON object");
     command->callback(
         [arguments, &chosen] { chosen = [arguments] { return run_compare(*arguments); }; });
