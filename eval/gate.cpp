@@ -23,6 +23,7 @@ struct Pair {
     const GateMetric& metric;
     double tolerance_db;
     double k_sigma;
+    bool either_way;
     std::vector<double> errors;  ///< now, by seed
     MetricSpread now, then;
     Side now_side, then_side;
@@ -59,15 +60,19 @@ Verdict judge_mean(const Pair& pair) {
         decibels_per_decade(metric) *
         std::log10(error_of_value(metric, pair.now.mean) / error_of_value(metric, pair.then.mean));
     const double allowed_db = pair.tolerance_db + noise_db;
+    const bool judges_gain = pair.either_way && loss_db < 0;
     Verdict verdict;
     verdict.rule = "mean";
     verdict.value = pair.now.mean;
     set_interval(verdict, pair);
     verdict.baseline = pair.then.mean;
-    verdict.limit = worse_by(metric, pair.then.mean, allowed_db);
-    verdict.margin_db = allowed_db - loss_db;
+    verdict.limit = worse_by(metric, pair.then.mean, judges_gain ? -allowed_db : allowed_db);
+    verdict.margin_db = allowed_db - (pair.either_way ? std::abs(loss_db) : loss_db);
     verdict.text = number_text(std::abs(loss_db), 3) +
-                   (loss_db > 0 ? " dB worse, allowed " : " dB better, allowed worse by ") +
+                   (loss_db > 0 ? " dB worse, allowed " : " dB better, allowed ") +
+                   (loss_db > 0   ? ""
+                    : judges_gain ? "either way "
+                                  : "worse by ") +
                    number_text(allowed_db, 3) + " = " + number_text(pair.tolerance_db, 3) +
                    " tolerance + " + number_text(noise_db, 3) + " noise";
     return verdict;
@@ -129,8 +134,8 @@ std::vector<Verdict> judge_metric(const RunGroup& group, const GateClass& gate,
         return {
             fact(Outcome::fail, "no baseline", "the baseline lacks this metric: vecino accept")};
     const MetricSpread now = spread_over_seeds(*metric.info, *errors);
-    return judge_pair({metric, tolerance_db, gate.k_sigma, *errors, now, then->second,
-                       side_of(*metric.info, now, errors->size()),
+    return judge_pair({metric, tolerance_db, gate.k_sigma, gate.either_way, *errors, now,
+                       then->second, side_of(*metric.info, now, errors->size()),
                        side_of(*metric.info, then->second, baseline.seeds)});
 }
 

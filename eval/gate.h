@@ -3,7 +3,9 @@
 // Holds a run against a baseline. Every comparison is a verdict that names the rule that decided.
 //
 // Quality, per group of cells and metric, in decibels of the metric's error:
-//   mean     loss = d log10(mean error now / mean error then), d = 10 or 20, must not exceed
+//   mean     loss = d log10(mean error now / mean error then), d = 10 or 20, must not exceed (where
+//   a
+//            class judges either way: nor fall below the negative of)
 //            tolerance + t s sqrt(1/n + 1/m), where s pools both sides' relative deviations over
 //            their n and m seeds, and t is the quantile of Student's t with n + m - 2 degrees of
 //            freedom that is exceeded as rarely as k_sigma sigma by a normal distribution

@@ -27,6 +27,7 @@ constexpr NumberRange kSigmas{0.0, 8.0};
 constexpr NumberRange kPercent{0.0, 1000.0};
 constexpr RealKind kToleranceKind{kTolerance};
 constexpr RealKind kSigmasKind{kSigmas};
+constexpr BooleanKind kSwitch{};
 constexpr RealKind kPercentKind{kPercent};
 
 std::string metric_names() {
@@ -90,6 +91,9 @@ constexpr JsonKey<GateClass> kKeys[] = {
      read_tolerances, tolerances_schema},
     {"k_sigma", optional, "how far noise may reach; 3 by default", read_sigmas,
      schema_of<kSigmasKind>},
+    member_key<kSwitch, &GateClass::either_way>(
+        "either_way", optional,
+        "whether an error may not fall either: of methods that are specified to the letter"),
     {"time_tolerance_percent", optional,
      "how much longer it may take; time is not gated without it", read_time_tolerance,
      schema_of<kPercentKind>},

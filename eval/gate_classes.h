@@ -3,7 +3,7 @@
 // Classes of cells and what a gate asks of each, from the key "gates" of a matrix:
 //   {"class": "path tracing", "where": {"method": "path"},
 //    "tolerance_db": {"psnr_float_db": 0.1, "edge.psnr_float_db": 0.3}, "k_sigma": 3,
-//    "time_tolerance_percent": 10}
+//    "either_way": false, "time_tolerance_percent": 10}
 // A cell is of the first class whose "where" it matches (in the words of a selection); a cell that
 // no class names is of the class "default".
 #pragma once
@@ -28,6 +28,9 @@ struct GateClass {
     /// What noise explains: as many standard errors as a normal distribution exceeds as rarely as
     /// it does this many sigma; more where few seeds say how large a standard error is.
     double k_sigma = 3;
+    /// Whether an error may not fall either, as of methods that are specified to the letter: better
+    /// than they should be is wrong, too.
+    bool either_way = false;
     std::optional<double> time_tolerance;  ///< share by which time may grow; none: not gated
 };
 

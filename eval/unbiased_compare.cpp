@@ -8,7 +8,7 @@
 #include "core/channel_file.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "core/sample_sums.h"
+#include "core/accumulate.h"
 #include "eval/metrics_json.h"
 #include "eval/render_metadata.h"
 
@@ -21,12 +21,12 @@ bool all_finite(const Image& image) {
     });
 }
 
-struct Render {
+struct RenderFile {
     std::string file;
     Frame frame;
     int streams = 0;
 
-    explicit Render(const std::string& path) : file(path), frame(load_frame(path)) {
+    explicit RenderFile(const std::string& path) : file(path), frame(load_frame(path)) {
         for (const auto& [plane, is_there] : {std::pair("variance", !frame.variance.empty()),
                                               std::pair("count", !frame.sample_count.empty())}) {
             if (is_there) continue;
@@ -53,8 +53,8 @@ const char* const kChannels[] = {"R", "G", "B"};
 }  // namespace
 
 std::vector<UnbiasedRule> compare_unbiased(const std::string& test, const std::string& reference) {
-    const Render a(test);
-    const Render b(reference);
+    const RenderFile a(test);
+    const RenderFile b(reference);
     if (a.frame.size() != b.frame.size())
         throw Error(ExitCode::mismatch,
                     size_mismatch_text(test, a.frame.size(), reference, b.frame.size()));
