@@ -11,6 +11,8 @@
 #include "core/image_io.h"
 #include "eval/commands.h"
 #include "eval/error_map.h"
+#include "eval/gate_report.h"
+#include "eval/image_series.h"
 #include "eval/metrics.h"
 #include "eval/metrics_json.h"
 #include "eval/render_options.h"
@@ -25,6 +27,8 @@ struct CompareArguments {
     std::string error_map;
     std::string error_kind = "magnitude";
     std::string test_kind;
+    std::string ctest;
+    bool series = false;
     std::optional<double> min_psnr, min_ssim, max_relmse;
     bool json = false;
 };
@@ -97,6 +101,19 @@ void print_metrics(const Comparison& comparison) {
     if (comparison.regions) print_regions(*comparison.regions);
 }
 
+/// What CTest hands on to a dashboard: every metric, and pictures.
+void print_measurements(const CompareArguments& arguments, const Image& test,
+                        const Image& reference, const Metrics& metrics) {
+    if (arguments.ctest.empty()) return;
+    std::string tags;
+    for (const MetricInfo& metric : all_metrics()) {
+        if (const auto value = metric.value(metrics))
+            tags += ctest_number(std::string(metric.name), *value);
+    }
+    tags += write_comparison(test, reference, arguments.ctest);
+    std::printf("%s", tags.c_str());
+}
+
 /// Says on stderr which limit failed; true if all hold.
 bool limits_hold(const CompareArguments& arguments, const Metrics& m) {
     bool hold = true;
@@ -146,7 +163,9 @@ std::optional<RegionMap> regions_in(const Frame& reference) {
     return regions_of(reference);
 }
 
-ExitCode run_compare(const CompareArguments& arguments) {
+ExitCode run_compare(const CompareArguments& given) {
+    CompareArguments arguments = given;
+    if (arguments.series) arguments.reference = best_valid_image(given.test, given.reference);
     require_files(arguments);
     const Image test = load_image(arguments.test);
     const Reference loaded = load_reference(arguments.reference);
@@ -174,6 +193,7 @@ ExitCode run_compare(const CompareArguments& arguments) {
                      non_finite_text(arguments, comparison.non_finite).c_str());
         return ExitCode::non_finite;
     }
+    print_measurements(arguments, test, reference, *comparison.metrics);
     if (!loaded.no_regions.empty())
         std::fprintf(stderr, "warning: no regions: %s\n", loaded.no_regions.c_str());
     const bool same_expectation = std::ranges::all_of(rules, &UnbiasedRule::holds);
@@ -231,7 +251,17 @@ void add_compare_command(CLI::App& app, Action& chosen) {
                      "unbiased: fail unless both may be of the same expected image; both need the "
                      "planes variance and count")
         ->check(CLI::IsMember({"unbiased"}));
-    command->add_flag("--json", arguments->json, "print one JSON object");
+    CLI::Option* const json = command->add_flag("--json", arguments->json, "print one JSON object");
+    command->add_flag(
+        "--series", arguments->series,
+        "REFERENCE may have alternatives, as ref_1.exr, ref_2.exr beside ref.exr: the "
+        "best match counts");
+    command
+        ->add_option("--ctest", arguments->ctest,
+                     "a folder for test.png, valid.png and difference.png; also print measurements "
+                     "and images as CTest hands them to CDash")
+        ->check(not_empty())
+        ->excludes(json);
     command->callback(
         [arguments, &chosen] { chosen = [arguments] { return run_compare(*arguments); }; });
 }
