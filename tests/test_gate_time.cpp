@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "eval/frame_jobs.h"
 #include "tests/catch.h"
 #include "tests/gate_groups.h"
+#include "tests/tiny_run.h"
 
 using namespace vecino;
 
@@ -70,4 +72,20 @@ TEST_CASE("the interval of a ratio is Welch's", "[gate]") {
     CHECK(ratio.low.value() == Approx(2 * std::exp(-half)).epsilon(1e-5));
     CHECK(ratio.high.value() == Approx(2 * std::exp(half)).epsilon(1e-5));
     CHECK_FALSE(time_ratio({2.0, 0.1}, 1, {1.0, 0.1}, 4).low);
+}
+
+TEST_CASE("a run takes seeds in turn, so that a slow minute meets all groups alike", "[gate]") {
+    TinyMatrix tiny;
+    tiny.json["axes"]["reduction"] = {2, 3};
+    tiny.json["axes"]["seed"] = {1, 2, 3};
+    const std::vector<Cell> cells = expand(tiny.load());
+    std::vector<std::uint32_t> seeds;
+    std::size_t done = 0;
+    for (const FrameJob& job :
+         frame_jobs(plan_run(cells, {}, [](const Cell&) { return CellState::missing; }))) {
+        if (job.traces) seeds.push_back(job.settings.seed);
+        done += job.cells.size();
+    }
+    CHECK(done == cells.size());
+    CHECK(seeds == std::vector<std::uint32_t>{1, 1, 1, 2, 2, 2, 3, 3, 3});
 }
