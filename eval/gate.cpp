@@ -63,6 +63,7 @@ Verdict judge_mean(const Pair& pair) {
     const bool judges_gain = pair.either_way && loss_db < 0;
     Verdict verdict;
     verdict.rule = "mean";
+    verdict.noise_db = noise_db;
     verdict.value = pair.now.mean;
     set_interval(verdict, pair);
     verdict.baseline = pair.then.mean;

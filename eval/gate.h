@@ -41,6 +41,7 @@ struct Verdict {
     std::optional<double> baseline;
     std::optional<double> limit;
     std::optional<double> margin_db;  ///< of time: in percent; below 0 it fails
+    std::optional<double> noise_db;   ///< of a mean: how much of the limit noise explains
     std::string text;                 ///< what decided, in words
 };
 

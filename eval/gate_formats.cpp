@@ -44,6 +44,7 @@ Json verdict_json(const Verdict& v) {
             {"baseline", number_or_null(v.baseline)},
             {"limit", number_or_null(v.limit)},
             {v.rule == "time" ? "margin_percent" : "margin_db", number_or_null(v.margin_db)},
+            {"noise_db", number_or_null(v.noise_db)},
             {"text", v.text}};
 }
 

@@ -16,6 +16,7 @@ namespace vecino {
 namespace {
 
 constexpr std::size_t kClosestShown = 5;
+constexpr double kDullAbove_db = 1;
 constexpr std::size_t kMostMarkdownBytes = 60000;
 constexpr std::size_t kMarkdownTailBytes = 2000;  ///< kept for what stands below the tables
 
@@ -108,6 +109,15 @@ std::string time_line(const GateResult& result) {
            number_text(ratios[ratios.size() / 2], 2) + " x\n";
 }
 
+/// A gate that lets a decibel through as noise is not of much use, and few seeds make it so.
+std::string dull_line(const GateResult& result) {
+    const auto is_dull = [](const Verdict& v) { return v.noise_db && *v.noise_db > kDullAbove_db; };
+    const auto count = std::ranges::count_if(result.verdicts, is_dull);
+    if (count == 0) return "";
+    return "warning: in " + std::to_string(count) + " comparisons noise explains more than " +
+           number_text(kDullAbove_db, 0) + " dB: more seeds see smaller losses\n";
+}
+
 std::string unused_line(const GateResult& result) {
     std::string text;
     for (const std::string& name : result.unused)
@@ -173,7 +183,7 @@ std::string gate_text(const GateResult& result) {
         text += "\n" + std::to_string(passed.size()) + " passed, closest to their limits:\n" +
                 text_table(closest);
     return text + "\n" + identical_line(result) + time_line(result) + not_gated_text(result) +
-           unused_line(result);
+           dull_line(result) + unused_line(result);
 }
 
 std::string gate_markdown(const GateResult& result) {
@@ -189,7 +199,7 @@ std::string gate_markdown(const GateResult& result) {
         text += details(std::to_string(passed.size()) + " passed, closest to their limits first",
                         markdown_table(passed, room()));
     std::string rest = identical_line(result) + "\n" + time_line(result) + "\n" +
-                       not_gated_text(result) + unused_line(result);
+                       not_gated_text(result) + dull_line(result) + unused_line(result);
     if (rest.size() > kMarkdownTailBytes / 2) rest.resize(kMarkdownTailBytes / 2);
     std::string escaped_rest;
     for (std::size_t start = 0; start < rest.size();) {

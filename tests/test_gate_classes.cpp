@@ -52,16 +52,16 @@ TEST_CASE("without gates, all cells are of the default class: mean, edges, worst
 TEST_CASE("a tolerance is one number, or one per metric that is judged", "[gate]") {
     json gate = kPath;
     gate["tolerance_db"] = 0.7;
-    for (const auto& [metric, tolerance] : read({gate}).front().tolerance_db)
-        CHECK(tolerance == 0.7);
+    const GateClass one_number = read(json::array({gate})).front();
+    for (const auto& [metric, tolerance] : one_number.tolerance_db) CHECK(tolerance == 0.7);
     gate["tolerance_db"] = {{"interior.relmse", 0.3}};
     gate["time_tolerance_percent"] = 25;
-    const GateClass read_back = read({gate}).front();
+    const GateClass read_back = read(json::array({gate})).front();
     REQUIRE(read_back.tolerance_db.size() == 1);
     CHECK(read_back.tolerance_db.front().first.name == "interior.relmse");
     CHECK(read_back.time_tolerance.value() == 0.25);
     gate["tolerance_db"] = json::object();
-    CHECK(read({gate}).front().tolerance_db.empty());
+    CHECK(read(json::array({gate})).front().tolerance_db.empty());
 }
 
 TEST_CASE("a faulty gate is named with its place", "[gate]") {

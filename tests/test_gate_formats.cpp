@@ -45,7 +45,7 @@ TEST_CASE("the text names every failure with value, baseline, limit, margin and 
     const GateResult result = failing();
     const std::string text = gate_text(result);
     CHECK(text.find("FAIL: 4 of 16 comparisons in 2 groups of matrix failed, worst first\n") == 0);
-    CHECK(text.find("24.987") != std::string::npos);
+    CHECK(text.find("25.012") != std::string::npos);
     CHECK(text.find("30.012") != std::string::npos);
     CHECK(text.find("default: 5.0") != std::string::npos);
     CHECK(text.find("1 of 2 groups have the baseline's very numbers") != std::string::npos);
@@ -109,4 +109,13 @@ TEST_CASE("CTest's tags are those that VTK prints", "[gate]") {
     CHECK(ctest_image("TestImage", "/x/y.png") ==
           "<CTestMeasurementFile type=\"image/png\" "
           "name=\"TestImage\">/x/y.png</CTestMeasurementFile>\n");
+}
+
+TEST_CASE("a gate that noise makes dull says so", "[gate]") {
+    const GateRun sharp = run_of({group_of(kThen)});
+    CHECK(gate_text(check_run(sharp, baseline_of(sharp))).find("more seeds") == std::string::npos);
+    const GateRun dull = run_of({group_of({30.0, 31.0})});
+    CHECK(gate_text(check_run(dull, baseline_of(dull)))
+              .find("warning: in 4 comparisons noise explains more than 1 dB") !=
+          std::string::npos);
 }
