@@ -169,7 +169,7 @@ GateClass without_tolerance() {
 
 }  // namespace
 
-TEST_CASE("false alarms and detection, from renders", "[.][benchmark][rates]") {
+TEST_CASE("rates of false alarms and of detection", "[.][benchmark][rates]") {
     constexpr int kBaselines = 20;
     constexpr int kChecks = 25;  // of each baseline
     constexpr double kLosses_db[] = {0.1, 0.2, 0.5, 1.0};
