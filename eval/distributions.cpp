@@ -67,10 +67,4 @@ double student_quantile(double tail, double degrees) {
     return std::sqrt(degrees * (1 - x) / x);
 }
 
-double fisher_quantile(double tail, RatioDegrees degrees) {
-    const double x =
-        inverse_incomplete_beta(tail, 0.5 * degrees.denominator, 0.5 * degrees.numerator);
-    return degrees.denominator * (1 - x) / (degrees.numerator * x);
-}
-
 }  // namespace vecino

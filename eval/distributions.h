@@ -19,13 +19,4 @@ double student_tail(double t, double degrees);
 /// 0.5].
 double student_quantile(double tail, double degrees);
 
-/// Degrees of freedom of a ratio of two sample variances.
-struct RatioDegrees {
-    double numerator;
-    double denominator;
-};
-
-/// The f that Fisher's F exceeds with that probability. Precondition: degrees > 0, tail in (0, 1).
-double fisher_quantile(double tail, RatioDegrees degrees);
-
 }  // namespace vecino

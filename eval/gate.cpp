@@ -79,26 +79,33 @@ Verdict judge_mean(const Pair& pair) {
     return verdict;
 }
 
-Verdict judge_spread(const Pair& pair) {
-    const auto freedom = [](const Side& side) { return static_cast<double>(side.seeds - 1); };
-    const double factor = std::sqrt(fisher_quantile(
-        normal_tail(pair.k_sigma), {freedom(pair.now_side), freedom(pair.then_side)}));
-    const double unit = pair.decibels_per_relative();
-    const double now_db = unit * pair.now_side.relative_deviation;
-    const double then_db = unit * pair.then_side.relative_deviation;
-    const double allowed_db = factor * then_db + pair.tolerance_db;
-    // Deviations are shown in the metric's unit, of which a decibel is so much.
-    const double shown = now_db > 0 ? pair.now.deviation / now_db : 0;
+/// The seed that more than half of the seeds are at least as bad as.
+double majority_error(std::vector<double> errors) {
+    std::ranges::sort(errors);
+    return errors[errors.size() - errors.size() / 2 - 1];
+}
+
+Verdict judge_seeds(const Pair& pair) {
+    const MetricInfo& metric = *pair.metric.info;
+    const auto seeds_then = static_cast<double>(pair.then_side.seeds);
+    const double noise_db = pair.decibels_per_relative() * pair.then_side.relative_deviation *
+                            student_quantile(normal_tail(pair.k_sigma), seeds_then - 1) *
+                            std::sqrt(1 + 1 / seeds_then);
+    const double error = majority_error(pair.errors);
+    const double loss_db =
+        decibels_per_decade(metric) * std::log10(error / error_of_value(metric, pair.then.mean));
+    const double allowed_db = pair.tolerance_db + noise_db;
     Verdict verdict;
-    verdict.rule = "spread";
-    verdict.value = pair.now.deviation;
-    verdict.baseline = pair.then.deviation;
-    if (shown > 0) verdict.limit = allowed_db * shown;
-    verdict.margin_db = allowed_db - now_db;
-    verdict.text = "seeds scatter by " + number_text(now_db, 3) + " dB, allowed " +
-                   number_text(allowed_db, 3) + " = " + number_text(factor, 2) + " x " +
-                   number_text(then_db, 3) + " + " + number_text(pair.tolerance_db, 3) +
-                   " tolerance";
+    verdict.rule = "seeds";
+    verdict.value = value_of_error(metric, error);
+    verdict.baseline = pair.then.mean;
+    verdict.limit = worse_by(metric, pair.then.mean, allowed_db);
+    verdict.margin_db = allowed_db - loss_db;
+    verdict.text = "most seeds are " + number_text(std::abs(loss_db), 3) +
+                   (loss_db > 0 ? " dB worse or more" : " dB better or less") +
+                   ", allowed of a single one " + number_text(allowed_db, 3) + " = " +
+                   number_text(pair.tolerance_db, 3) + " tolerance + " + number_text(noise_db, 3) +
+                   " scatter then";
     return verdict;
 }
 
@@ -114,11 +121,17 @@ Side side_of(const MetricInfo& metric, const MetricSpread& spread, std::size_t s
     return {relative_deviation(metric, spread), seeds};
 }
 
+Outcome outcome_of(const Verdict& verdict) {
+    return *verdict.margin_db >= 0 ? Outcome::pass : Outcome::fail;
+}
+
 std::vector<Verdict> judge_pair(const Pair& pair) {
     std::vector<Verdict> verdicts{judge_mean(pair)};
-    if (pair.now_side.seeds > 1 && pair.then_side.seeds > 1) verdicts.push_back(judge_spread(pair));
-    for (Verdict& verdict : verdicts)
-        verdict.outcome = *verdict.margin_db >= 0 ? Outcome::pass : Outcome::fail;
+    verdicts.front().outcome = outcome_of(verdicts.front());
+    const bool holds = verdicts.front().outcome == Outcome::pass;
+    if (!holds || pair.now_side.seeds < 2 || pair.then_side.seeds < 2) return verdicts;
+    verdicts.push_back(judge_seeds(pair));
+    verdicts.back().outcome = outcome_of(verdicts.back());
     return verdicts;
 }
 

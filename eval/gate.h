@@ -9,9 +9,10 @@
 //            tolerance + t s sqrt(1/n + 1/m), where s pools both sides' relative deviations over
 //            their n and m seeds, and t is the quantile of Student's t with n + m - 2 degrees of
 //            freedom that is exceeded as rarely as k_sigma sigma by a normal distribution
-//   spread   the deviation now must not exceed sqrt(F) times the one then, plus the tolerance: F is
-//            the quantile of the ratio of two variances of n and m seeds, as rare. Without it a run
-//            that scatters would excuse its own mean.
+//   seeds    where the mean holds: of the seeds now, not more than half may each be worse by the
+//            tolerance + t s sqrt(1 + 1/m) with the scatter then alone, as rare. Without it a run
+//            that scatters would excuse its own mean; a lone outlier, which heavy tails bring,
+//            fails nothing
 // Facts that no number excuses: a cell that is missing, failed, stale or not finite; a group,
 // metric or question without baseline; a group of the baseline that the run lacks. Time: ratio of
 // geometric means over seeds, which a run takes in turn. Fails where a class gates it, the host is
@@ -33,7 +34,7 @@ enum class Outcome { pass, fail, not_gated };
 /// Numbers are in the metric's unit. None where the rule has no such thing.
 struct Verdict {
     Outcome outcome = Outcome::pass;
-    std::string rule;  ///< "mean", "spread", "time", "missing cell", "no baseline", ...
+    std::string rule;  ///< "mean", "seeds", "time", "missing cell", "no baseline", ...
     std::string class_name;
     std::string group;
     std::string metric;

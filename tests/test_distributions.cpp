@@ -40,17 +40,6 @@ TEST_CASE("quantiles of Student's t are those of tables", "[distributions]") {
     CHECK(student_tail(t, degrees) == Approx(tail).epsilon(1e-5));
 }
 
-TEST_CASE("quantiles of Fisher's F are those of tables", "[distributions]") {
-    const auto [tail, a, b, f] =
-        GENERATE(table<double, double, double, double>({{0.05, 1, 1, 161.4476},
-                                                        {0.05, 3, 15, 3.287382},
-                                                        {0.01, 7, 7, 6.992833},
-                                                        {0.05, 10, 20, 2.347878},
-                                                        {0.01, 4, 2, 99.24937}}));
-    CAPTURE(tail, a, b);
-    CHECK(fisher_quantile(tail, {a, b}) == Approx(f).epsilon(1e-5));
-}
-
 TEST_CASE("three sigma of a normal distribution are a tail of 0.00135", "[distributions]") {
     CHECK(normal_tail(3) == Approx(0.001349898).epsilon(1e-6));
     CHECK(normal_tail(0) == 0.5);

@@ -164,7 +164,7 @@ TEST_CASE("one wrong weight of a scheme is caught by the committed baseline", "[
     const json verdicts = json::parse(check.out)["verdicts"];
     for (const json& verdict : verdicts) {
         if (verdict["outcome"] != "fail") continue;
-        CHECK((verdict["rule"] == "mean" || verdict["rule"] == "spread"));
+        CHECK((verdict["rule"] == "mean" || verdict["rule"] == "seeds"));
         classes.insert(verdict["class"].get<std::string>());
         const std::string group = verdict["group"];
         const std::size_t dot = group.find('.') + 1;
