@@ -3,6 +3,7 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vecino)
 set(data_dir ${CMAKE_INSTALL_DATADIR}/vecino)
+set(program_dir ${CMAKE_INSTALL_BINDIR})
 
 install(TARGETS vecino)
 install(TARGETS vecino_core vecino_filters EXPORT vecino_targets
@@ -14,8 +15,9 @@ install(DIRECTORY configs scenes DESTINATION ${data_dir} FILES_MATCHING PATTERN 
 string(REGEX MATCH "^[0-9]+" embree_major "${embree_VERSION}")
 set(made_dir ${PROJECT_BINARY_DIR}/package)
 configure_package_config_file(core/vecino-config.cmake.in ${made_dir}/vecino-config.cmake
-    INSTALL_DESTINATION ${package_dir} PATH_VARS data_dir NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+    INSTALL_DESTINATION ${package_dir} PATH_VARS data_dir program_dir NO_CHECK_REQUIRED_COMPONENTS_MACRO)
 write_basic_package_version_file(${made_dir}/vecino-config-version.cmake
     COMPATIBILITY SameMinorVersion)  # while the major version is 0
 install(FILES ${made_dir}/vecino-config.cmake ${made_dir}/vecino-config-version.cmake
+    eval/vecino-image-test.cmake eval/vecino-run-image-test.cmake
     DESTINATION ${package_dir})

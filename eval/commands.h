@@ -23,6 +23,8 @@ void add_render_command(CLI::App& app, Action& chosen);
 void add_upsample_command(CLI::App& app, Action& chosen);
 void add_merge_command(CLI::App& app, Action& chosen);
 void add_compare_command(CLI::App& app, Action& chosen);
+void add_check_command(CLI::App& app, Action& chosen);
+void add_accept_command(CLI::App& app, Action& chosen);
 void add_run_command(CLI::App& app, Action& chosen);
 void add_report_command(CLI::App& app, Action& chosen);
 void add_list_command(CLI::App& app, Action& chosen);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -12,10 +13,13 @@
 #include "eval/commands.h"
 #include "eval/comparison_vti.h"
 #include "eval/error_map.h"
+#include "eval/gate_report.h"
+#include "eval/image_series.h"
 #include "eval/loaded_frame.h"
 #include "eval/metrics.h"
 #include "eval/metrics_json.h"
 #include "eval/render_options.h"
+#include "eval/unbiased_compare.h"
 
 namespace vecino {
 namespace {
@@ -26,6 +30,9 @@ struct CompareArguments {
     std::string error_map;
     std::string error_kind = "magnitude";
     std::vector<std::string> channels, reference_channels;  ///< empty: R, G, B or Y
+    std::string test_kind;
+    std::string ctest;
+    bool series = false;
     std::optional<double> min_psnr, min_ssim, max_relmse;
     bool json = false;
 };
@@ -105,6 +112,19 @@ void print_metrics(const Comparison& comparison) {
     if (comparison.regions) print_regions(*comparison.regions);
 }
 
+/// What CTest hands on to a dashboard: every metric, and pictures.
+void print_measurements(const CompareArguments& arguments, const Image& test,
+                        const Image& reference, const Metrics& metrics) {
+    if (arguments.ctest.empty()) return;
+    std::string tags;
+    for (const MetricInfo& metric : all_metrics()) {
+        if (const auto value = metric.value(metrics))
+            tags += ctest_number(std::string(metric.name), *value);
+    }
+    tags += write_comparison(test, reference, arguments.ctest);
+    std::printf("%s", tags.c_str());
+}
+
 /// Says on stderr which limit failed; true if all hold.
 bool limits_hold(const CompareArguments& arguments, const Metrics& m) {
     bool hold = true;
@@ -147,7 +167,9 @@ std::optional<RegionMap> regions_in(const Frame& reference) {
     return regions_of(reference);
 }
 
-ExitCode run_compare(const CompareArguments& arguments) {
+ExitCode run_compare(const CompareArguments& given) {
+    CompareArguments arguments = given;
+    if (arguments.series) arguments.reference = best_valid_image(given.test, given.reference);
     require_files(arguments);
     const bool wants_planes = std::filesystem::path(arguments.error_map).extension() == ".vti";
     const LoadedFrame tested = load_with(arguments.test, arguments.channels, wants_planes);
@@ -163,19 +185,28 @@ ExitCode run_compare(const CompareArguments& arguments) {
     write_error_map(arguments, test, reference);
     write_error_vti(arguments, {tested.frame, loaded.frame, regions ? &*regions : nullptr, {}},
                     comparison);
+    const bool tests = arguments.test_kind == "unbiased" && comparison.metrics;
+    std::vector<UnbiasedRule> rules;
+    if (tests) rules = compare_unbiased(arguments.test, arguments.reference);
     if (arguments.json) {
-        std::printf("%s\n", comparison_json(comparison).dump().c_str());
+        nlohmann::json json = comparison_json(comparison);
+        if (tests) json["unbiased"] = unbiased_json(rules);
+        std::printf("%s\n", json.dump().c_str());
     } else {
         print_metrics(comparison);
+        std::printf("%s", unbiased_text(rules).c_str());
     }
     if (!comparison.metrics) {
         std::fprintf(stderr, "error: %s\n",
                      non_finite_text(arguments, comparison.non_finite).c_str());
         return ExitCode::non_finite;
     }
+    print_measurements(arguments, test, reference, *comparison.metrics);
     if (!loaded.no_planes.empty())
         std::fprintf(stderr, "warning: no regions: %s\n", loaded.no_planes.c_str());
-    return limits_hold(arguments, *comparison.metrics) ? ExitCode::ok : ExitCode::quality;
+    const bool same_expectation = std::ranges::all_of(rules, &UnbiasedRule::holds);
+    const bool hold = limits_hold(arguments, *comparison.metrics) && same_expectation;
+    return hold ? ExitCode::ok : ExitCode::quality;
 }
 
 /// A limit that is not a number would let everything pass.
@@ -231,7 +262,22 @@ void add_compare_command(CLI::App& app, Action& chosen) {
     add_limit("--min-psnr", arguments->min_psnr, "fail below this psnr_db");
     add_limit("--min-ssim", arguments->min_ssim, "fail below this ssim");
     add_limit("--max-relmse", arguments->max_relmse, "fail above this relmse");
-    command->add_flag("--json", arguments->json, "print one JSON object");
+    command
+        ->add_option("--test", arguments->test_kind,
+                     "unbiased: fail unless both may be of the same expected image; both need the "
+                     "planes variance and count")
+        ->check(CLI::IsMember({"unbiased"}));
+    CLI::Option* const json = command->add_flag("--json", arguments->json, "print one JSON object");
+    command->add_flag(
+        "--series", arguments->series,
+        "REFERENCE may have alternatives, as ref_1.exr, ref_2.exr beside ref.exr: the "
+        "best match counts");
+    command
+        ->add_option("--ctest", arguments->ctest,
+                     "a folder for test.png, valid.png and difference.png; also print measurements "
+                     "and images as CTest hands them to CDash")
+        ->check(not_empty())
+        ->excludes(json);
     command->callback(
         [arguments, &chosen] { chosen = [arguments] { return run_compare(*arguments); }; });
 }

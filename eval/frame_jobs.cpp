@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/frame_jobs.h"
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "eval/render_options.h"
 
@@ -26,6 +28,17 @@ std::string job_key(const Cell& cell) {
     return key.dump();
 }
 
+/// Scene by scene, all frames of a seed before those of the next: whatever slows the machine down
+/// for a while meets all groups alike, and their times by seed can be compared.
+void take_seeds_in_turn(std::vector<FrameJob>& jobs) {
+    std::map<std::string, std::size_t> scene_order;
+    for (const FrameJob& job : jobs)
+        scene_order.try_emplace(job.cells.front()->scene, scene_order.size());
+    std::ranges::stable_sort(jobs, {}, [&](const FrameJob& job) {
+        return std::pair(scene_order.at(job.cells.front()->scene), job.settings.seed);
+    });
+}
+
 }  // namespace
 
 double FrameJob::samples() const {
@@ -48,6 +61,7 @@ std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan) {
         job.settings.planes.add(planes_read_by(cell));
         job.cells.push_back(&cell);
     }
+    take_seeds_in_turn(jobs);
     return jobs;
 }
 

@@ -22,8 +22,8 @@ struct FrameJob {
     [[nodiscard]] double samples() const;  ///< to trace
 };
 
-/// What is to do, by frame, in the order of the cells. A frame has the planes that some scheme
-/// reads, and no other.
+/// What is to do, by frame, scene by scene in the order of the cells, seeds in turn. A frame has
+/// the planes that some scheme reads, and no other.
 std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan);
 
 /// The planes of a frame that a cell needs.

@@ -64,6 +64,10 @@ struct Matrix {
 /// load_scene does.
 Matrix load_matrix(const std::string& path);
 
+/// Of a document with all that it extends, as run.json keeps it; the file is for errors and scene
+/// paths. Throws Error(usage).
+Matrix matrix_of(nlohmann::json document, const std::string& file);
+
 /// All cells, path tracing and ceilings included, in a fixed order with unique names.
 std::vector<Cell> expand(const Matrix& matrix);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/axes.h"
+#include "eval/gate_classes.h"
 #include "eval/matrix.h"
 #include "eval/render_options.h"
 #include "eval/reproduction_spec.h"
@@ -89,22 +90,27 @@ void check_cells(const JsonValue& json, const Matrix& matrix) {
     }
 }
 
-Matrix check(Json document, const std::string& file) {
+}  // namespace
+
+Matrix matrix_of(Json document, const std::string& file) {
     Matrix matrix;
     matrix.file = file;
     matrix.document = std::move(document);
     const JsonValue json(matrix.document, file);
     json.require_keys({"$schema", "extends", "name", "axes", "exclude", "include", "fixed",
-                       "images", "reference", "measure", "reproduction"});
+                       "images", "reference", "measure", "gates", "reproduction"});
     if (json.has("$schema")) (void)json.at("$schema").string();
     matrix.name = json.at("name").string();
     read_reference(json.at("reference"), matrix);
     if (json.has("images")) read_images(json.at("images"), matrix);
     if (json.has("measure")) matrix.repeat = read_repeat(json.at("measure"));
     check_cells(json, matrix);
+    (void)read_gate_classes(json);
     if (json.has("reproduction")) (void)read_reproduction(json);
     return matrix;
 }
+
+namespace {
 
 /// Scene paths are relative to the file that they stand in: once they stand in another one, they
 /// have to lead to the same place, and be spelled as one would there, so that excludes match them.
@@ -155,7 +161,7 @@ Json merged(Json base, const Json& own) {
 Matrix load(const std::string& path, std::vector<std::string>& opened) {
     const Json own = parse_json_file(path);
     const JsonValue json(own, path);
-    if (!own.is_object() || !json.has("extends")) return check(own, path);
+    if (!own.is_object() || !json.has("extends")) return matrix_of(own, path);
     (void)json.at("name").string();
     const fs::path folder = fs::path(path).parent_path().lexically_normal();
     const std::string base_path =
@@ -165,7 +171,7 @@ Matrix load(const std::string& path, std::vector<std::string>& opened) {
         json.at("extends").fail("a matrix that does not lead back to this one");
     Json base = load(base_path, opened).document;
     move_files(base, fs::path(base_path).parent_path(), folder);
-    return check(merged(std::move(base), own), path);
+    return matrix_of(merged(std::move(base), own), path);
 }
 
 }  // namespace

@@ -111,6 +111,8 @@ constexpr DescribedKey kMatrixKeys[] = {
     {"reference", optional, "the render, or the file, that cells are held against",
      reference_schema},
     {"measure", optional, "", [] { return object_schema(kMeasureKeys); }},
+    {"gates", optional, "classes of cells and how much worse than a baseline each may be",
+     gates_schema},
     {"reproduction", optional, "what a publication states, to be held against the results",
      reproduction_schema},
 };

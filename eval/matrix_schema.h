@@ -13,4 +13,7 @@ nlohmann::json matrix_schema();
 /// Of the part "reproduction". Refers to the rest of the matrix's schema.
 nlohmann::json reproduction_schema();
 
+/// The part of it that "gates" takes.
+nlohmann::json gates_schema();
+
 }  // namespace vecino

@@ -18,6 +18,7 @@ constexpr double kPeak8bit = 255.0;
 constexpr int kSsimWindow = 11;
 constexpr int kSsimBorder = kSsimWindow / 2;
 constexpr double kSsimSigma = 1.5;
+constexpr int kTilePixels = 16;
 
 NonFinite find_non_finite(const Image& test, const Image& reference) {
     NonFinite found;
@@ -156,6 +157,28 @@ void measure_display(const Values& values, Metrics& metrics) {
     metrics.psnr_float_db = psnr(values, 1.0);
 }
 
+/// Where tiles begin along an axis: they fill it, and none is smaller than the others.
+std::vector<int> tile_starts(int pixels) {
+    std::vector<int> starts;
+    for (int start = 0; start < pixels; start += kTilePixels)
+        starts.push_back(std::max(0, std::min(start, pixels - kTilePixels)));
+    return starts;
+}
+
+/// Of the whole image: a row of values per row of pixels.
+void measure_tiles(const Values& values, Metrics& metrics) {
+    const cv::Rect image(0, 0, values.test.cols, values.test.rows);
+    for (const int y : tile_starts(values.test.rows)) {
+        for (const int x : tile_starts(values.test.cols / 3)) {
+            const cv::Rect tile = cv::Rect(3 * x, y, 3 * kTilePixels, kTilePixels) & image;
+            const auto found = psnr({values.test(tile), values.reference(tile)}, 1.0);
+            if (!found) continue;
+            metrics.worst_tile_psnr_db =
+                std::min(*found, metrics.worst_tile_psnr_db.value_or(*found));
+        }
+    }
+}
+
 void measure_8bit(const Values& values, Metrics& metrics) {
     metrics.psnr_db = psnr(values, kPeak8bit);
     metrics.identical_8bit = !metrics.psnr_db.has_value();
@@ -183,8 +206,11 @@ void measure(const Image& test, const Image& reference, std::span<const Part> pa
     measure_parts({channel_values(test), channel_values(reference)}, parts, measure_linear);
     const Image test_display = map_pixels(test, display_value);
     const Image reference_display = map_pixels(reference, display_value);
-    measure_parts({channel_values(test_display), channel_values(reference_display)}, parts,
-                  measure_display);
+    {
+        const Values display{channel_values(test_display), channel_values(reference_display)};
+        measure_parts(display, parts, measure_display);
+        measure_tiles(display, *parts.front().metrics);
+    }
     const Values values_8bit{channel_values(map_pixels(test_display, quantised)),
                              channel_values(map_pixels(reference_display, quantised))};
     measure_parts(values_8bit, parts, measure_8bit);
@@ -218,22 +244,31 @@ PerRegion<RegionMetrics> unmeasured(const RegionMap& regions) {
 // clang-format off
 constexpr MetricInfo kMetrics[] = {
     {"psnr_float_db", "10 log10(1 / mean (x-r)^2) dB, x and r clipped to [0,1] and sRGB-encoded, not quantised",
-     true, [](const Metrics& m) { return m.psnr_float_db; }},
+     true, [](const Metrics& m) { return m.psnr_float_db; }, ErrorScale::decibel},
     {"psnr_db", "10 log10(255^2 / mean (x-r)^2) dB, x and r clipped to [0,1], sRGB-encoded, quantised to 8 bit",
-     true, [](const Metrics& m) { return m.psnr_db; }},
+     true, [](const Metrics& m) { return m.psnr_db; }, ErrorScale::decibel},
     {"ssim", "Wang 2004 on the 8-bit images: Gaussian 11x11, sigma 1.5, K1 .01, K2 .03, range 255, border of 5 cropped, "
              "mean over channels",
-     true, [](const Metrics& m) { return m.ssim; }},
+     true, [](const Metrics& m) { return m.ssim; }, ErrorScale::similarity},
     {"relmse", "mean (x-r)^2 / (r^2 + 0.01) over pixels and channels, linear",
-     false, [](const Metrics& m) { return std::optional(m.relmse); }},
+     false, [](const Metrics& m) { return std::optional(m.relmse); }, ErrorScale::power},
     {"mae", "mean |x-r| over all channel values, linear",
-     false, [](const Metrics& m) { return std::optional(m.mae); }},
+     false, [](const Metrics& m) { return std::optional(m.mae); }, ErrorScale::amplitude},
     {"max_error", "largest |x-r| of all channel values, linear",
-     false, [](const Metrics& m) { return std::optional(m.max_error); }},
+     false, [](const Metrics& m) { return std::optional(m.max_error); }, ErrorScale::amplitude},
     {"p99_error", "99th percentile of |x-r| over all channel values (the ceil(0.99 n)-th smallest), linear",
-     false, [](const Metrics& m) { return std::optional(m.p99_error); }},
+     false, [](const Metrics& m) { return std::optional(m.p99_error); }, ErrorScale::amplitude},
+    {"worst_tile_psnr_db", "psnr_float_db of the worst tile of 16x16 pixels; the last of a row or column ends at the border",
+     true, [](const Metrics& m) { return m.worst_tile_psnr_db; }, ErrorScale::decibel},
 };
 // clang-format on
+
+/// A new row whose scale was left out would be taken for an amplitude.
+static_assert(std::ranges::all_of(kMetrics, [](const MetricInfo& metric) {
+    const bool is_similarity =
+        metric.scale == ErrorScale::decibel || metric.scale == ErrorScale::similarity;
+    return metric.higher_is_better == is_similarity;
+}));
 
 }  // namespace
 

@@ -26,6 +26,7 @@ struct Metrics {
     double mae = 0;
     double max_error = 0;
     double p99_error = 0;
+    std::optional<double> worst_tile_psnr_db;  ///< none: identical there, or of a region
 };
 
 /// Where values are NaN or infinite, in either image.
@@ -52,11 +53,21 @@ struct Comparison {
 /// Error(mismatch) when the sizes differ, naming both.
 Comparison compare(const Image& test, const Image& reference, const RegionMap* regions = nullptr);
 
+/// What error a metric stands for, and what a decibel of it is. With it, a tolerance in dB means
+/// the same for every metric: 20 dB are a tenth of the deviation.
+enum class ErrorScale {
+    amplitude,   ///< the value is an error like |x-r|: 20 log10
+    power,       ///< the value is an error like (x-r)^2: 10 log10
+    similarity,  ///< 1 - value is an error like (x-r)^2
+    decibel,     ///< the value is -10 log10 of an error like (x-r)^2
+};
+
 struct MetricInfo {
     std::string_view name;     ///< key in results and --json
     std::string_view formula;  ///< one line
     bool higher_is_better;
     std::optional<double> (*value)(const Metrics&);
+    ErrorScale scale;
 };
 
 /// The 0.01 of relmse.

@@ -62,14 +62,17 @@ int run_program(int argc, const char* const* argv) {
     add_compare_command(app, chosen);
     add_run_command(app, chosen);
     add_report_command(app, chosen);
+    add_check_command(app, chosen);
+    add_accept_command(app, chosen);
     add_list_command(app, chosen);
     add_schema_command(app, chosen);
     add_bench_command(app, chosen);
     app.footer(
-        "Exit codes: 0 pass; 2 a quality limit failed or cells of a run failed; 3 sizes, channels "
-        "or planes do not fit;\n"
-        "4 a file cannot be read or written; 5 non-finite pixels; 64 bad usage or JSON content; "
-        "130 interrupted.");
+        "Exit codes: 0 pass; 2 a quality limit failed, a baseline is missing or cells of a run "
+        "failed;\n"
+        "3 sizes, channels or planes do not fit; 4 a file cannot be read or written; 5 non-finite "
+        "pixels;\n"
+        "64 bad usage or JSON content; 125 not done, as answered; 130 interrupted.");
     try {
         return parse_and_run(app, argc, argv, chosen);
     } catch (const Error& error) {

@@ -20,6 +20,7 @@ struct RunArguments {
     std::string directory;
     std::string only;
     std::string rerun;
+    int simd_width = 0;
     bool dry_run = false;
 };
 
@@ -84,7 +85,7 @@ void check_inputs(const std::vector<Cell>& cells, const RunOptions& options) {
 }
 
 ExitCode run_run(const RunArguments& arguments) {
-    const RunOptions options{arguments.only, parse_rerun(arguments.rerun)};
+    const RunOptions options{arguments.only, parse_rerun(arguments.rerun), arguments.simd_width};
     const Matrix matrix = load_matrix(arguments.config);
     check_inputs(expand(matrix), options);
     if (arguments.dry_run) return print_estimate(matrix, arguments, options);
@@ -160,6 +161,10 @@ void add_run_command(CLI::App& app, Action& chosen) {
                         "run only cells whose name matches this regular expression");
     command->add_option("--rerun", arguments->rerun,
                         "do again: failed, stale (another build or scene file), all");
+    command
+        ->add_option("--simd-width", arguments->simd_width,
+                     "samples side by side: 1, 4, 8, 16; default: the widest of this machine")
+        ->check(CLI::IsMember(simd_widths()));
     command->add_flag("--dry-run", arguments->dry_run,
                       "print the cells to do and an estimate of the time");
     command->callback(

@@ -41,10 +41,13 @@ class Runner {
         : matrix_(matrix), directory_(std::move(directory)), cells_(expand(matrix)) {
         const nlohmann::json versions = version_json();
         build_ = versions["build"].get<std::string>();
+        simd_width_ = options.simd_width > 0 ? options.simd_width : simd_widths().front();
         run_ = {{"name", matrix.name}, {"config", matrix.document}, {"versions", versions}};
+        run_["versions"]["simd_width"] = simd_width_;
         require_same_matrix();
         for (Cell& cell : cells_) {
             load_scene_of(cell);
+            cell.settings.simd_width = simd_width_;
             if (cell.budget != Budget::equal_time) continue;
             if (const auto spp = equal_time_.spp(cell)) cell.settings.spp = *spp;
         }
@@ -153,6 +156,7 @@ class Runner {
             return CellState::missing;
         const bool same_program =
             row.value("build", nlohmann::json()) == build_ &&
+            row.value("simd_width", nlohmann::json()) == simd_width_ &&
             row.value("scene_hash", nlohmann::json()) == scene_hashes_.at(cell.scene) &&
             row.value("image_hash", "") == image_hash(cell);
         return same_program ? CellState::finished : CellState::stale;
@@ -249,10 +253,11 @@ class Runner {
     const StoredReference& reference_of(const Cell& cell) {
         if (matrix_.reference_source != nullptr) return reference_from_file(cell);
         RenderSettings settings = reference_settings(matrix_, cell);
-        const std::string key =
-            frame_key(cell.scene, settings) + scene_hashes_.at(cell.scene) + build_;
+        const std::string key = frame_key(cell.scene, settings) + scene_hashes_.at(cell.scene) +
+                                build_ + " " + std::to_string(simd_width_);
         return references_.get(key, stem(cell.scene), [&] {
             settings.planes = reference_planes();
+            settings.simd_width = simd_width_;
             return reference_halves(settings, [&](const RenderSettings& half) {
                 return render_with_progress(cell.scene, half, stem(cell.scene) + " reference")
                     .frame;
@@ -313,6 +318,7 @@ class Runner {
                            {"scene_hash", scene_hashes_.at(cell.scene)},
                            {"image_hash", image_hash(cell)},
                            {"build", build_},
+                           {"simd_width", simd_width_},
                            {"host", run_["versions"]["cpu"]}};
         row.update(cell_result(cell, input, directory_));
         directory_.append(row);
@@ -354,6 +360,7 @@ class Runner {
     std::vector<PlannedCell> plan_;
     nlohmann::json run_;
     std::string build_;
+    int simd_width_ = 0;
     Spent before_;
     Stopwatch watch_;
     std::size_t done_cells_ = 0;

@@ -26,6 +26,7 @@ struct RunOptions {
     std::string
         only;  ///< regular expression that a cell's name must hold somewhere; empty: every cell
     Rerun rerun = Rerun::nothing;  ///< what is done again beside what is missing
+    int simd_width = 0;            ///< samples traced side by side: 4, 8, 16 or 1; 0: the widest
 };
 
 struct PlannedCell {

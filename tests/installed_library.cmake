@@ -55,3 +55,15 @@ run(${CMAKE_CTEST_COMMAND} --test-dir ${example_dir} -C ${config} --output-on-fa
 # It has 27 dB, a black image 8.
 run(${prefix}/bin/vecino compare ${example_dir}/cornell.exr ${source_dir}/tests/data/cornell_depth2_128.exr
     --min-psnr 25)
+
+# Its image test took the second baseline, and left pictures. With the first alone it would have failed: it can.
+foreach(picture IN ITEMS test valid difference)
+    if(NOT EXISTS ${example_dir}/image_tests/cornell_image/${picture}.png)
+        message(FATAL_ERROR "the image test left no ${picture}.png")
+    endif()
+endforeach()
+execute_process(COMMAND ${prefix}/bin/vecino compare ${example_dir}/cornell_image.exr
+    ${source_dir}/tests/example/baselines/cornell.exr --min-psnr 50 RESULT_VARIABLE result OUTPUT_QUIET)
+if(NOT result EQUAL 2)
+    message(FATAL_ERROR "the first baseline alone: found exit code ${result}, allowed: 2")
+endif()

@@ -270,6 +270,7 @@ TEST_CASE("the table of metrics names each value of the result once", "[metrics]
     metrics.mae = 5;
     metrics.max_error = 6;
     metrics.p99_error = 7;
+    metrics.worst_tile_psnr_db = 8;
     std::set<std::string> names;
     double expected = 0;
     for (const MetricInfo& info : all_metrics()) {
@@ -279,5 +280,5 @@ TEST_CASE("the table of metrics names each value of the result once", "[metrics]
         CHECK(info.formula.find('\n') == std::string_view::npos);
     }
     CHECK(names == std::set<std::string>{"psnr_float_db", "psnr_db", "ssim", "relmse", "mae",
-                                         "max_error", "p99_error"});
+                                         "max_error", "p99_error", "worst_tile_psnr_db"});
 }

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/accept.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <regex>
+
+#include "core/error.h"
+#include "eval/commands.h"
+#include "eval/gate.h"
+
+namespace vecino {
+namespace {
+
+std::string short_number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.5g", value);
+    return text;
+}
+
+std::string spread_text(const MetricSpread& spread) {
+    return short_number(spread.mean) + " +- " + short_number(spread.deviation);
+}
+
+std::regex compile(const std::string& only) {
+    try {
+        return std::regex(only);
+    } catch (const std::regex_error&) {
+        throw Error(ExitCode::usage, "command line: --only: found \"" + only +
+                                         "\", allowed: an ECMAScript regular expression");
+    }
+}
+
+struct Line {
+    char mark;  ///< ' ' same, '~' other numbers, '!' the old baseline's gate fails, '+' new, '-'
+                ///< gone
+    std::string group, metric, old_text, new_text, note;
+};
+
+class Plan {
+  public:
+    Plan(const GateRun& run, const std::optional<Baseline>& old, const std::string& only)
+        : run_(run), old_(old), only_text_(only), only_(compile(only)) {
+        if (!old || old->matrix == run.matrix) return;
+        throw Error(ExitCode::usage, "baseline: found one of the matrix \"" + old->matrix +
+                                         "\", allowed: of \"" + run.matrix + "\", or a new file");
+    }
+
+    AcceptPlan make() {
+        plan_.baseline.matrix = run_.matrix;
+        if (old_) plan_.baseline.groups = old_->groups;
+        bool any = false;
+        for (const RunGroup& group : run_.groups) {
+            if (!std::regex_search(group.name, only_)) continue;
+            any = true;
+            accept(group);
+        }
+        remove_gone();
+        if (!any)
+            throw Error(ExitCode::usage, "command line: --only: found \"" + only_text_ +
+                                             "\", allowed: an expression that matches a group");
+        plan_.table = table();
+        return std::move(plan_);
+    }
+
+  private:
+    const BaselineGroup* old_group(const std::string& name) const {
+        if (!old_) return nullptr;
+        const auto found = old_->groups.find(name);
+        return found == old_->groups.end() ? nullptr : &found->second;
+    }
+
+    void accept(const RunGroup& group) {
+        if (!group.faults.empty()) {
+            plan_.faults.insert(plan_.faults.end(), group.faults.begin(), group.faults.end());
+            return;
+        }
+        const GateClass& gate = class_of(run_.classes, group.params);
+        const BaselineGroup now = baseline_of(group, gate);
+        const BaselineGroup* const then = old_group(group.name);
+        if (then == nullptr || !(*then == now)) {
+            ++plan_.changed;
+            plan_.baseline.groups[group.name] = now;
+        }
+        for (const auto& [metric, tolerance] : gate.tolerance_db)
+            add_line(group, gate, metric, now);
+    }
+
+    void add_line(const RunGroup& group, const GateClass& gate, const GateMetric& metric,
+                  const BaselineGroup& now) {
+        const auto value = now.metrics.find(metric.name);
+        if (value == now.metrics.end()) return;
+        Line line{'+', group.name, metric.name, "-", spread_text(value->second), ""};
+        const BaselineGroup* const then = old_group(group.name);
+        if (then != nullptr && then->metrics.contains(metric.name)) {
+            line.old_text = spread_text(then->metrics.at(metric.name));
+            compare(group, gate, metric, line);
+        }
+        lines_.push_back(line);
+    }
+
+    void compare(const RunGroup& group, const GateClass& gate, const GateMetric& metric,
+                 Line& line) {
+        const BaselineGroup& then = *old_group(group.name);
+        line.mark = line.old_text == line.new_text ? ' ' : '~';
+        if (!same_question(then.question, group.question)) {
+            line.mark = '~';
+            line.note = "another question";
+            return;
+        }
+        for (const Verdict& verdict : judge_quality(group, gate, then)) {
+            if (verdict.metric != metric.name || verdict.outcome != Outcome::fail) continue;
+            line.mark = '!';
+            line.note += (line.note.empty() ? "" : "; ") + verdict.rule + ": " + verdict.text;
+        }
+    }
+
+    void remove_gone() {
+        std::erase_if(plan_.baseline.groups, [&](const auto& entry) {
+            const bool gone =
+                run_.find(entry.first) == nullptr && std::regex_search(entry.first, only_);
+            if (gone) {
+                ++plan_.changed;
+                lines_.push_back({'-', entry.first, "", "", "", "no longer in the matrix"});
+            }
+            return gone;
+        });
+    }
+
+    std::string table() const {
+        std::size_t widths[4] = {5, 6, 3, 3};
+        for (const Line& line : lines_) {
+            const std::string* const texts[] = {&line.group, &line.metric, &line.old_text,
+                                                &line.new_text};
+            for (int i = 0; i < 4; ++i) widths[i] = std::max(widths[i], texts[i]->size());
+        }
+        std::string text;
+        const auto add = [&](const Line& line) {
+            const auto padded = [&](std::string part, int column) {
+                part.resize(widths[column] + 2, ' ');
+                return part;
+            };
+            text += std::string(1, line.mark) + " " + padded(line.group, 0) +
+                    padded(line.metric, 1) + padded(line.old_text, 2) + padded(line.new_text, 3) +
+                    line.note;
+            text.erase(text.find_last_not_of(' ') + 1);
+            text += "\n";
+        };
+        add({' ', "group", "metric", "old", "new", "+- standard deviation over seeds"});
+        for (const Line& line : lines_) add(line);
+        return text;
+    }
+
+    const GateRun& run_;
+    const std::optional<Baseline>& old_;
+    std::string only_text_;
+    std::regex only_;
+    AcceptPlan plan_;
+    std::vector<Line> lines_;
+};
+
+}  // namespace
+
+AcceptPlan plan_accept(const GateRun& run, const std::optional<Baseline>& old,
+                       const std::string& only) {
+    return Plan(run, old, only).make();
+}
+
+}  // namespace vecino
