@@ -43,16 +43,18 @@ BuiltImage build_image(const Cell& cell, const CellInput& input) {
 }
 
 /// Of a ceiling, a region's metrics are those of the best image for that region.
-nlohmann::json compare_cell(const Cell& cell, const Image& image, const StoredReference& reference,
+nlohmann::json compare_cell(const Cell& cell, const Image& image, const CellInput& input,
                             bool& is_finite) {
-    const Comparison comparison = compare(image, reference.image, &reference.regions);
+    const StoredReference& reference = *input.reference;
+    const Comparison comparison =
+        compare(image, reference.image, &reference.regions, input.metrics);
     is_finite = comparison.non_finite.count == 0;
     nlohmann::json metrics = comparison_json(comparison);
     if (cell.kind != CellKind::blocky_ceiling) return metrics;
     const Extent low = reduced(cell.settings.size, cell.settings.reduction);
     const Image by_region = blocky_ceiling(reference.image, low, &reference.regions);
-    metrics["regions"] =
-        comparison_json(compare(by_region, reference.image, &reference.regions))["regions"];
+    metrics["regions"] = comparison_json(
+        compare(by_region, reference.image, &reference.regions, input.metrics))["regions"];
     return metrics;
 }
 
@@ -77,7 +79,7 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
     const BuiltImage built = build_image(cell, input);
     nlohmann::json row;
     bool is_finite = false;
-    row["metrics"] = compare_cell(cell, built.made.image, *input.reference, is_finite);
+    row["metrics"] = compare_cell(cell, built.made.image, input, is_finite);
     const double write_s = save(built.made.image, cell, directory);
     const RenderStatistics s =
         input.traced == nullptr ? RenderStatistics{} : input.traced->statistics;

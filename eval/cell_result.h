@@ -4,6 +4,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
 
 #include "core/render.h"
 #include "eval/matrix.h"
@@ -20,6 +22,7 @@ struct CellInput {
     const Render* traced = nullptr;  ///< times are medians; null for ceilings
     const StoredReference* reference = nullptr;
     int repeat = 1;  ///< timings of the reconstruction, unless it takes long
+    std::span<const std::string> metrics = {};  ///< of those on request
 };
 
 /// Makes the cell's image, saves it in the run directory and returns "status", "metrics", "time_s"

@@ -48,6 +48,7 @@ struct Matrix {
     std::string file;
     nlohmann::json document;  ///< checked, with what it extends
     RenderSettings reference;
+    std::vector<std::string> metrics;  ///< of those on request, which to measure
     int repeat = 1;  ///< timings of a stage that takes under 0.5 s; the median counts
 };
 

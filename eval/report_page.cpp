@@ -32,6 +32,7 @@ Json data_json(const ReportData& data) {
     return {{"groups", std::move(groups)},
             {"methods", methods_json(data)},
             {"scenes", data.scenes},
+            {"metrics", metric_list_json(data)},
             {"graphs", graphs_json(data)},
             {"convergence", convergence_json(data.convergence)},
             {"time_decimals", data.time_decimals}};
