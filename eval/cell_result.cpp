@@ -90,17 +90,21 @@ BuiltImage build_image(const Cell& cell, const CellInput& input, const RunDirect
 }
 
 /// Of a ceiling, a region's metrics are those of the best image for that region.
-nlohmann::json compare_cell(const Cell& cell, const Image& image, const StoredReference& reference,
+nlohmann::json compare_cell(const Cell& cell, const Image& image, const CellInput& input,
                             bool& is_finite) {
+    const StoredReference& reference = *input.reference;
     const RegionMap* const regions =
         reference.regions.values().empty() ? nullptr : &reference.regions;
-    const Comparison comparison = compare(image, reference.image, regions);
+    const auto measured = [&](const Image& each) {
+        return compare(each, reference.image, regions, input.matrix->metrics);
+    };
+    const Comparison comparison = measured(image);
     is_finite = comparison.non_finite.count == 0;
     nlohmann::json metrics = comparison_json(comparison);
     if (cell.kind != CellKind::blocky_ceiling || regions == nullptr) return metrics;
     const Extent low = reduced(cell.settings.size, cell.settings.reduction);
     const Image by_region = blocky_ceiling(reference.image, low, regions);
-    metrics["regions"] = comparison_json(compare(by_region, reference.image, regions))["regions"];
+    metrics["regions"] = comparison_json(measured(by_region))["regions"];
     return metrics;
 }
 
@@ -125,7 +129,7 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
     const BuiltImage built = build_image(cell, input, directory);
     nlohmann::json row;
     bool is_finite = false;
-    row["metrics"] = compare_cell(cell, built.made.image, *input.reference, is_finite);
+    row["metrics"] = compare_cell(cell, built.made.image, input, is_finite);
     const double write_s = save(built.made.image, cell, directory);
     RenderStatistics s = input.traced == nullptr ? RenderStatistics{} : input.traced->statistics;
     s.trace_s += built.elsewhere_s;

@@ -18,6 +18,7 @@
 #include "eval/loaded_frame.h"
 #include "eval/metrics.h"
 #include "eval/metrics_json.h"
+#include "eval/reference_error.h"
 #include "eval/render_options.h"
 #include "eval/unbiased_compare.h"
 
@@ -34,6 +35,7 @@ struct CompareArguments {
     std::string ctest;
     bool series = false;
     std::optional<double> min_psnr, min_ssim, max_relmse;
+    std::vector<std::string> metrics;
     bool json = false;
 };
 
@@ -76,6 +78,10 @@ std::string value_text(const std::optional<double>& value) {
     return value ? number_text(*value, 5) : "-";
 }
 
+std::string number_of(const nlohmann::json& value, int digits) {
+    return value.is_number() ? number_text(value.get<double>(), digits) : "-";
+}
+
 /// A column per region below the metrics of the whole image.
 void print_regions(const PerRegion<RegionMetrics>& regions) {
     const auto print_row = [&](std::string_view name, auto text_of) {
@@ -88,6 +94,9 @@ void print_regions(const PerRegion<RegionMetrics>& regions) {
     print_row("region", [](const RegionInfo& info, auto&) { return std::string(info.name); });
     print_row("pixels", [](auto&, const RegionMetrics& r) { return std::to_string(r.pixels); });
     for (const MetricInfo& metric : all_metrics()) {
+        const bool has_value = std::ranges::any_of(
+            regions, [&](const RegionMetrics& r) { return r.metrics && metric.value(*r.metrics); });
+        if (!has_value && metric.is_on_request) continue;
         print_row(metric.name, [&](auto&, const RegionMetrics& r) {
             return value_text(r.metrics ? metric.value(*r.metrics) : std::nullopt);
         });
@@ -99,15 +108,18 @@ void print_regions(const PerRegion<RegionMetrics>& regions) {
 
 void print_metrics(const Comparison& comparison) {
     if (!comparison.metrics) return;
+    const Metrics& metrics = *comparison.metrics;
     for (const MetricInfo& metric : all_metrics()) {
-        const std::string name(metric.name);
-        const std::string formula(metric.formula);
-        std::printf("%-14s %12s   %s\n", name.c_str(),
-                    value_text(metric.value(*comparison.metrics)).c_str(), formula.c_str());
+        const auto value = metric.value(metrics);
+        if (!value && metric.is_on_request) continue;
+        std::printf("%-14s %12s   %s\n", std::string(metric.name).c_str(),
+                    value_text(value).c_str(), std::string(metric.formula).c_str());
     }
-    if (comparison.metrics->identical_8bit) std::printf("the 8-bit images are identical\n");
-    if (!comparison.metrics->ssim_reason.empty()) {
-        std::printf("no ssim: %s\n", comparison.metrics->ssim_reason.c_str());
+    if (metrics.identical_8bit) std::printf("the 8-bit images are identical\n");
+    for (const MetricInfo& metric : all_metrics()) {
+        if (!metric.reason || metric.reason(metrics).empty()) continue;
+        std::printf("no %s: %s\n", std::string(metric.name).c_str(),
+                    metric.reason(metrics).c_str());
     }
     if (comparison.regions) print_regions(*comparison.regions);
 }
@@ -123,6 +135,28 @@ void print_measurements(const CompareArguments& arguments, const Image& test,
     }
     tags += write_comparison(test, reference, arguments.ctest);
     std::printf("%s", tags.c_str());
+}
+
+/// What is known of the reference's own error, and whether it is what the comparison shows.
+nlohmann::json reference_facts(const Frame& reference, const RegionMap* regions,
+                               const Comparison& comparison) {
+    const nlohmann::json error = reference_error(reference, regions);
+    const auto flag = limited_by_reference(metrics_json(comparison.metrics), error);
+    return {{"reference_error", error},
+            {"limited_by_reference", flag ? nlohmann::json(*flag) : nlohmann::json()}};
+}
+
+void print_reference(const nlohmann::json& facts) {
+    const nlohmann::json& error = facts["reference_error"];
+    if (!error.is_object()) {
+        std::printf("reference's own error: unknown, the file has no Variance planes\n");
+        return;
+    }
+    std::printf("reference's own error: psnr_float_db %s, relmse %s, from its Variance planes\n",
+                number_of(error["psnr_float_db"], 5).c_str(),
+                number_of(error["relmse"], 5).c_str());
+    if (facts["limited_by_reference"] == true)
+        std::printf("%s\n", std::string(kLimitedFormula).c_str());
 }
 
 /// Says on stderr which limit failed; true if all hold.
@@ -162,6 +196,18 @@ void require_files(const CompareArguments& arguments) {
     if (!arguments.error_map.empty()) require_writable(arguments.error_map);
 }
 
+void print_comparison(const CompareArguments& arguments, const Comparison& comparison,
+                      const nlohmann::json& facts) {
+    if (arguments.json) {
+        nlohmann::json json = comparison_json(comparison);
+        json.update(facts);
+        std::printf("%s\n", json.dump().c_str());
+        return;
+    }
+    print_metrics(comparison);
+    if (comparison.metrics) print_reference(facts);
+}
+
 std::optional<RegionMap> regions_in(const Frame& reference) {
     if (!has_region_planes(reference)) return std::nullopt;
     return regions_of(reference);
@@ -181,21 +227,17 @@ ExitCode run_compare(const CompareArguments& given) {
                                                            arguments.reference, reference.size()));
     }
     const std::optional<RegionMap> regions = regions_in(loaded.frame);
-    const Comparison comparison = compare(test, reference, regions ? &*regions : nullptr);
+    const RegionMap* const map = regions ? &*regions : nullptr;
+    const Comparison comparison = compare(test, reference, map, arguments.metrics);
     write_error_map(arguments, test, reference);
-    write_error_vti(arguments, {tested.frame, loaded.frame, regions ? &*regions : nullptr, {}},
-                    comparison);
+    write_error_vti(arguments, {tested.frame, loaded.frame, map, {}}, comparison);
     const bool tests = arguments.test_kind == "unbiased" && comparison.metrics;
     std::vector<UnbiasedRule> rules;
     if (tests) rules = compare_unbiased(arguments.test, arguments.reference);
-    if (arguments.json) {
-        nlohmann::json json = comparison_json(comparison);
-        if (tests) json["unbiased"] = unbiased_json(rules);
-        std::printf("%s\n", json.dump().c_str());
-    } else {
-        print_metrics(comparison);
-        std::printf("%s", unbiased_text(rules).c_str());
-    }
+    nlohmann::json facts = reference_facts(loaded.frame, map, comparison);
+    if (tests) facts["unbiased"] = unbiased_json(rules);
+    print_comparison(arguments, comparison, facts);
+    if (!arguments.json) std::printf("%s", unbiased_text(rules).c_str());
     if (!comparison.metrics) {
         std::fprintf(stderr, "error: %s\n",
                      non_finite_text(arguments, comparison.non_finite).c_str());
@@ -262,6 +304,11 @@ void add_compare_command(CLI::App& app, Action& chosen) {
     add_limit("--min-psnr", arguments->min_psnr, "fail below this psnr_db");
     add_limit("--min-ssim", arguments->min_ssim, "fail below this ssim");
     add_limit("--max-relmse", arguments->max_relmse, "fail above this relmse");
+    command
+        ->add_option("--metric", arguments->metrics,
+                     "measure this one, too, which costs more than the others")
+        ->check(CLI::IsMember(metrics_on_request()))
+        ->allow_extra_args(false);
     command
         ->add_option("--test", arguments->test_kind,
                      "unbiased: fail unless both may be of the same expected image; both need the "

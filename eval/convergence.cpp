@@ -33,7 +33,7 @@ ConvergencePoint point_of(const GroupSummary& group) {
                            group.trace_s, *group.relmse,
                            std::nullopt,  group.psnr_float_db};
     const SeedStatistics* const statistics = group.statistics_of("");
-    if (statistics != nullptr) point.variance = statistics->relative_variance;
+    if (statistics != nullptr) point.variance = statistics->relative.noise;
     return point;
 }
 

@@ -57,6 +57,7 @@ struct Matrix {
     /// Held against instead, where the matrix names a file.
     std::shared_ptr<const ImageSource> reference_source;
     std::map<std::string, std::shared_ptr<const ImageSource>> images;  ///< by name
+    std::vector<std::string> metrics;  ///< of those on request, which to measure
     int repeat = 1;  ///< timings of a stage that takes under 0.5 s; the median counts
 };
 

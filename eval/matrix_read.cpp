@@ -8,6 +8,7 @@
 #include "eval/axes.h"
 #include "eval/gate_classes.h"
 #include "eval/matrix.h"
+#include "eval/metrics.h"
 #include "eval/render_options.h"
 #include "eval/reproduction_spec.h"
 
@@ -63,9 +64,16 @@ void require_images(const JsonValue& cells, const Matrix& matrix) {
     }
 }
 
-int read_repeat(const JsonValue& json) {
-    json.require_keys({"repeat"});
-    return json.has("repeat") ? json.at("repeat").integer(1, 1000) : 1;
+void read_measure(const JsonValue& json, Matrix& matrix) {
+    json.require_keys({"repeat", "metrics"});
+    if (json.has("repeat")) matrix.repeat = json.at("repeat").integer(1, 1000);
+    if (!json.has("metrics")) return;
+    const std::vector<std::string> allowed = metrics_on_request();
+    for (const JsonValue& name : json.at("metrics").elements()) {
+        if (std::ranges::find(allowed, name.string()) == allowed.end())
+            name.fail(join(std::vector<std::string_view>(allowed.begin(), allowed.end())));
+        matrix.metrics.push_back(name.string());
+    }
 }
 
 void check_fixed(const JsonValue& json) {
@@ -103,7 +111,7 @@ Matrix matrix_of(Json document, const std::string& file) {
     matrix.name = json.at("name").string();
     read_reference(json.at("reference"), matrix);
     if (json.has("images")) read_images(json.at("images"), matrix);
-    if (json.has("measure")) matrix.repeat = read_repeat(json.at("measure"));
+    if (json.has("measure")) read_measure(json.at("measure"), matrix);
     check_cells(json, matrix);
     (void)read_gate_classes(json);
     if (json.has("reproduction")) (void)read_reproduction(json);

@@ -7,6 +7,7 @@
 #include "eval/axes.h"
 #include "eval/budget.h"
 #include "eval/image_source.h"
+#include "eval/metrics.h"
 #include "eval/render_options.h"
 #include "filters/schemes.h"
 
@@ -93,8 +94,13 @@ json reference_schema() {
     return schema;
 }
 
+json metrics_schema() {
+    return array_schema({{"enum", metrics_on_request()}}, {0, 0});
+}
+
 constexpr DescribedKey kMeasureKeys[] = {
     {"repeat", optional, "timings of a short stage; the median counts", schema_of<kRepeat>},
+    {"metrics", optional, "beside those that every cell has", metrics_schema},
 };
 
 constexpr DescribedKey kMatrixKeys[] = {

@@ -6,18 +6,17 @@
 #include <cstdint>
 #include <limits>
 #include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "eval/flip.h"
 #include "eval/pixel_values.h"
+#include "eval/ssim.h"
 
 namespace vecino {
 namespace {
 
 constexpr double kPeak8bit = 255.0;
-constexpr int kSsimWindow = 11;
-constexpr int kSsimBorder = kSsimWindow / 2;
-constexpr double kSsimSigma = 1.5;
+constexpr double kSmapeOffset = 0.01;
 constexpr int kTilePixels = 16;
 
 NonFinite find_non_finite(const Image& test, const Image& reference) {
@@ -96,53 +95,16 @@ std::optional<double> psnr(const Values& values, double peak) {
     return 10 * std::log10(peak * peak / mse);
 }
 
-/// Where no window leaves the image.
-cv::Rect ssim_interior(cv::Size image) {
-    return {kSsimBorder, kSsimBorder, image.width - 2 * kSsimBorder,
-            image.height - 2 * kSsimBorder};
-}
-
-/// Wang et al. 2004, without the border where the window leaves the image.
-cv::Mat ssim_map(const cv::Mat& x, const cv::Mat& y) {
-    constexpr double c1 = (0.01 * kPeak8bit) * (0.01 * kPeak8bit);
-    constexpr double c2 = (0.03 * kPeak8bit) * (0.03 * kPeak8bit);
-    const auto local_mean = [&](const cv::Mat& values) {
-        cv::Mat blurred;
-        cv::GaussianBlur(values, blurred, {kSsimWindow, kSsimWindow}, kSsimSigma);
-        return cv::Mat(blurred, ssim_interior(x.size()));
-    };
-    const cv::Mat mean_x = local_mean(x);
-    const cv::Mat mean_y = local_mean(y);
-    const cv::Mat mean_product = mean_x.mul(mean_y);
-    const cv::Mat mean_squares = mean_x.mul(mean_x) + mean_y.mul(mean_y);
-    const cv::Mat covariance = local_mean(x.mul(y)) - mean_product;
-    const cv::Mat variances = local_mean(x.mul(x) + y.mul(y)) - mean_squares;
-    const cv::Mat numerator = (2 * mean_product + c1).mul(2 * covariance + c2);
-    const cv::Mat denominator = (mean_squares + c1).mul(variances + c2);
-    return numerator / denominator;
-}
-
-/// One map per channel; none if the image is smaller than the window.
-std::vector<cv::Mat> ssim_maps(const Values& values) {
-    const cv::Mat x = values.test.reshape(3);
-    const cv::Mat y = values.reference.reshape(3);
-    if (x.cols < kSsimWindow || x.rows < kSsimWindow) return {};
-    std::vector<cv::Mat> maps;
-    for (int c = 0; c < 3; ++c) {
-        cv::Mat x_channel, y_channel;
-        cv::extractChannel(x, x_channel, c);
-        cv::extractChannel(y, y_channel, c);
-        maps.push_back(ssim_map(x_channel, y_channel));
-    }
-    return maps;
+/// A sentence for an image that is too small for a metric; empty if it is not.
+std::string too_small_text(Extent image, const std::string& metric, int least) {
+    if (std::min(image.width, image.height) >= least) return "";
+    return "image is " + size_text(image) + ", " + metric + " needs at least " +
+           std::to_string(least) + " pixels in both axes";
 }
 
 void measure_ssim(const std::vector<cv::Mat>& maps, Extent image, const Part& part) {
-    if (maps.empty()) {
-        part.metrics->ssim_reason =
-            "image is " + size_text(image) + ", ssim needs at least 11 pixels in both axes";
-        return;
-    }
+    part.metrics->ssim_reason = too_small_text(image, "ssim", kSsimWindow);
+    if (maps.empty()) return;
     const cv::Mat mask = part.mask.empty() ? cv::Mat() : part.mask(ssim_interior(part.mask.size()));
     if (!mask.empty() && cv::countNonZero(mask) == 0) {
         part.metrics->ssim_reason = "no pixel is inside of the border of 5 that ssim crops";
@@ -151,6 +113,14 @@ void measure_ssim(const std::vector<cv::Mat>& maps, Extent image, const Part& pa
     double sum = 0;
     for (const cv::Mat& map : maps) sum += cv::mean(select(map, mask))[0];
     part.metrics->ssim = sum / 3;
+}
+
+/// Of maps with a value per pixel.
+double mean_of(const Grid<float>& map, const cv::Mat& mask) {
+    auto* pixels = const_cast<float*>(map.values().data());  // cv::Mat knows no const
+    cv::Mat values;
+    cv::Mat(map.size().height, map.size().width, CV_32F, pixels).convertTo(values, CV_64F);
+    return cv::mean(select(values, mask))[0];
 }
 
 void measure_display(const Values& values, Metrics& metrics) {
@@ -190,6 +160,8 @@ void measure_linear(const Values& values, Metrics& metrics) {
     const cv::Mat relative =
         error.mul(error) / (values.reference.mul(values.reference) + kRelmseOffset);
     metrics.relmse = cv::mean(relative)[0];
+    const cv::Mat magnitudes = cv::abs(values.test) + cv::abs(values.reference);
+    metrics.smape = cv::mean(error / (magnitudes + kSmapeOffset))[0];
     metrics.mae = cv::mean(error)[0];
     metrics.max_error = cv::norm(error, cv::NORM_INF);
     metrics.p99_error =
@@ -214,8 +186,22 @@ void measure(const Image& test, const Image& reference, std::span<const Part> pa
     const Values values_8bit{channel_values(map_pixels(test_display, quantised)),
                              channel_values(map_pixels(reference_display, quantised))};
     measure_parts(values_8bit, parts, measure_8bit);
-    const std::vector<cv::Mat> maps = ssim_maps(values_8bit);
-    for (const Part& part : parts) measure_ssim(maps, test.size(), part);
+    const Ssim ssim =
+        structural_similarity({values_8bit.test.reshape(3), values_8bit.reference.reshape(3)});
+    for (const Part& part : parts) measure_ssim(ssim.maps, test.size(), part);
+    Metrics& whole = *parts.front().metrics;
+    whole.ms_ssim = ssim.multiscale;
+    whole.ms_ssim_reason = too_small_text(test.size(), "ms_ssim", kMsSsimLeast);
+}
+
+void measure_flip(const Image& test, const Image& reference, std::span<const Part> parts) {
+    const Grid<float> map = flip_map(test, reference);
+    for (const Part& part : parts) part.metrics->flip = mean_of(map, part.mask);
+}
+
+void measure_hdr_flip(const Image& test, const Image& reference, std::span<const Part> parts) {
+    const Grid<float> map = hdr_flip_map(test, reference);
+    for (const Part& part : parts) part.metrics->hdr_flip = mean_of(map, part.mask);
 }
 
 /// The whole image and every region that has a pixel, each with metrics to fill.
@@ -249,9 +235,22 @@ constexpr MetricInfo kMetrics[] = {
      true, [](const Metrics& m) { return m.psnr_db; }, ErrorScale::decibel},
     {"ssim", "Wang 2004 on the 8-bit images: Gaussian 11x11, sigma 1.5, K1 .01, K2 .03, range 255, border of 5 cropped, "
              "mean over channels",
-     true, [](const Metrics& m) { return m.ssim; }, ErrorScale::similarity},
+     true, [](const Metrics& m) { return m.ssim; }, ErrorScale::similarity,
+     [](const Metrics& m) -> const std::string& { return m.ssim_reason; }},
+    {"ms_ssim", "Wang 2003 on the 8-bit images: ssim's windows at 5 scales, each the 2x2 means of the one before, weights "
+                ".0448 .2856 .3001 .2363 .1333, mean over channels; of whole images of at least 161x161",
+     true, [](const Metrics& m) { return m.ms_ssim; }, ErrorScale::similarity,
+     [](const Metrics& m) -> const std::string& { return m.ms_ssim_reason; }},
+    {"flip", "mean LDR-FLIP (Andersson 2020), x and r clipped to [0,1], at 67.02 pixels per degree: a screen of 3840 px on "
+             "0.7 m seen from 0.7 m; 0 to 1",
+     false, [](const Metrics& m) { return std::optional(m.flip); }, ErrorScale::amplitude},
+    {"hdr_flip", "mean HDR-FLIP (Andersson 2021): the largest LDR-FLIP after ACES at 8 exposures from -4 to +4 stops; 0 to 1; "
+                 "measured on request",
+     false, [](const Metrics& m) { return m.hdr_flip; }, ErrorScale::amplitude, nullptr, true},
     {"relmse", "mean (x-r)^2 / (r^2 + 0.01) over pixels and channels, linear",
      false, [](const Metrics& m) { return std::optional(m.relmse); }, ErrorScale::power},
+    {"smape", "mean |x-r| / (|x| + |r| + 0.01) over pixels and channels, linear",
+     false, [](const Metrics& m) { return std::optional(m.smape); }, ErrorScale::amplitude},
     {"mae", "mean |x-r| over all channel values, linear",
      false, [](const Metrics& m) { return std::optional(m.mae); }, ErrorScale::amplitude},
     {"max_error", "largest |x-r| of all channel values, linear",
@@ -270,9 +269,17 @@ static_assert(std::ranges::all_of(kMetrics, [](const MetricInfo& metric) {
     return metric.higher_is_better == is_similarity;
 }));
 
+/// Those on request: what measures them. The others come in one go.
+struct OnRequest {
+    std::string_view name;
+    void (*measure)(const Image& test, const Image& reference, std::span<const Part>);
+};
+constexpr OnRequest kOnRequest[] = {{"hdr_flip", measure_hdr_flip}};
+
 }  // namespace
 
-Comparison compare(const Image& test, const Image& reference, const RegionMap* regions) {
+Comparison compare(const Image& test, const Image& reference, const RegionMap* regions,
+                   std::span<const std::string> on_request) {
     require_comparable(test, reference);
     Comparison comparison{
         .non_finite = find_non_finite(test, reference), .metrics = {}, .regions = {}};
@@ -280,7 +287,14 @@ Comparison compare(const Image& test, const Image& reference, const RegionMap* r
         require_size(*regions, test.size());
         comparison.regions = unmeasured(*regions);
     }
-    if (comparison.non_finite.count == 0) measure(test, reference, parts_of(comparison, regions));
+    if (comparison.non_finite.count > 0) return comparison;
+    const std::vector<Part> parts = parts_of(comparison, regions);
+    measure(test, reference, parts);
+    measure_flip(test, reference, parts);
+    for (const OnRequest& metric : kOnRequest) {
+        if (std::ranges::find(on_request, metric.name) == on_request.end()) continue;
+        metric.measure(test, reference, parts);
+    }
     return comparison;
 }
 
@@ -295,8 +309,10 @@ Grid<float> ssim_values(const Image& test, const Image& reference) {
         const glm::vec3 none(std::numeric_limits<float>::quiet_NaN());
         return is_finite(linear) ? quantised(display_value(linear)) : none;
     };
-    const std::vector<cv::Mat> maps = ssim_maps({channel_values(map_pixels(test, to_8bit)),
-                                                 channel_values(map_pixels(reference, to_8bit))});
+    const std::vector<cv::Mat> maps =
+        structural_similarity({channel_values(map_pixels(test, to_8bit)),
+                               channel_values(map_pixels(reference, to_8bit))})
+            .maps;
     Grid<float> values(test.size(), std::numeric_limits<float>::quiet_NaN());
     if (maps.empty()) return values;
     const cv::Mat mean = (maps[0] + maps[1] + maps[2]) / 3;
@@ -306,6 +322,13 @@ Grid<float> ssim_values(const Image& test, const Image& reference) {
         }
     }
     return values;
+}
+
+std::vector<std::string> metrics_on_request() {
+    std::vector<std::string> names;
+    for (const MetricInfo& metric : kMetrics)
+        if (metric.is_on_request) names.emplace_back(metric.name);
+    return names;
 }
 
 }  // namespace vecino

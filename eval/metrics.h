@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/grid.h"
 #include "eval/regions.h"
@@ -22,11 +23,16 @@ struct Metrics {
     bool identical_8bit = false;
     std::optional<double> ssim;  ///< none: see ssim_reason
     std::string ssim_reason;
+    std::optional<double> ms_ssim;  ///< none: of a region, or see ms_ssim_reason
+    std::string ms_ssim_reason;
     double relmse = 0;
+    double smape = 0;
     double mae = 0;
     double max_error = 0;
     double p99_error = 0;
     std::optional<double> worst_tile_psnr_db;  ///< none: identical there, or of a region
+    double flip = 0;
+    std::optional<double> hdr_flip;  ///< none: not asked for
 };
 
 /// Where values are NaN or infinite, in either image.
@@ -38,6 +44,7 @@ struct NonFinite {
 
 /// Over the pixels of a region alone. The windows of ssim reach beyond it: its ssim is the mean of
 /// the whole image's ssim map over those pixels of the region that the crop of the border leaves.
+/// flip and hdr_flip likewise are means of the whole image's maps.
 struct RegionMetrics {
     std::size_t pixels = 0;
     std::optional<Metrics> metrics;  ///< none without pixels, or when non_finite.count > 0
@@ -49,9 +56,11 @@ struct Comparison {
     std::optional<PerRegion<RegionMetrics>> regions;  ///< none: no regions were given
 };
 
-/// Compares linear RGB images, whole and, if regions are given, region by region. Throws
-/// Error(mismatch) when the sizes differ, naming both.
-Comparison compare(const Image& test, const Image& reference, const RegionMap* regions = nullptr);
+/// Compares linear RGB images, whole and, if regions are given, region by region. Of the metrics on
+/// request only those named are measured. Throws Error(mismatch) when the sizes differ, naming
+/// both.
+Comparison compare(const Image& test, const Image& reference, const RegionMap* regions = nullptr,
+                   std::span<const std::string> on_request = {});
 
 /// What error a metric stands for, and what a decibel of it is. With it, a tolerance in dB means
 /// the same for every metric: 20 dB are a tenth of the deviation.
@@ -68,6 +77,9 @@ struct MetricInfo {
     bool higher_is_better;
     std::optional<double> (*value)(const Metrics&);
     ErrorScale scale;
+    /// Why there is no value, empty otherwise; null: a missing value needs no words.
+    const std::string& (*reason)(const Metrics&) = nullptr;
+    bool is_on_request = false;  ///< costs too much to be measured unless it is asked for
 };
 
 /// The 0.01 of relmse.
@@ -80,5 +92,8 @@ Grid<float> ssim_values(const Image& test, const Image& reference);
 
 /// All metrics, in the order in which they are shown.
 std::span<const MetricInfo> all_metrics();
+
+/// Names of the metrics that are measured on request only.
+std::vector<std::string> metrics_on_request();
 
 }  // namespace vecino

@@ -9,18 +9,22 @@ namespace vecino {
 nlohmann::json metrics_json(const Metrics& metrics) {
     nlohmann::json json;
     for (const MetricInfo& metric : all_metrics()) {
+        const std::string name(metric.name);
         const auto value = metric.value(metrics);
-        json[std::string(metric.name)] = value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+        if (!value && metric.is_on_request) continue;
+        json[name] = value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+        if (metric.reason && !metric.reason(metrics).empty())
+            json[name + "_reason"] = metric.reason(metrics);
     }
     json["identical_8bit"] = metrics.identical_8bit;
-    if (!metrics.ssim_reason.empty()) json["ssim_reason"] = metrics.ssim_reason;
     return json;
 }
 
 nlohmann::json metrics_json(const std::optional<Metrics>& metrics) {
     if (metrics) return metrics_json(*metrics);
     nlohmann::json json{{"identical_8bit", false}};
-    for (const MetricInfo& metric : all_metrics()) json[std::string(metric.name)] = nullptr;
+    for (const MetricInfo& metric : all_metrics())
+        if (!metric.is_on_request) json[std::string(metric.name)] = nullptr;
     return json;
 }
 

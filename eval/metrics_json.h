@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Metrics as JSON, as `compare --json` and results.jsonl hold them. A metric without a value is
-// null.
+// null, with "NAME_reason" where there is one to tell; one that was not asked for is left out.
 #pragma once
 
 #include <nlohmann/json.hpp>

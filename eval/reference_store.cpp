@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/reference_store.h"
 
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "core/files.h"
 #include "core/image_io.h"
-#include "eval/metrics.h"
+#include "eval/reference_error.h"
 
 namespace vecino {
 namespace {
@@ -20,26 +19,11 @@ void mix(Image& image, const Image& other, double weight) {
         image.values()[i] = (1.0f - w) * image.values()[i] + w * other.values()[i];
 }
 
-/// Halves of n1 and n2 samples differ by a squared error of s/n1 + s/n2; their mean is off by
-/// s/(n1 + n2).
+/// Where there is no second half, what the first says of its variance.
 Json own_error(const ReferenceHalves& halves, const RegionMap& regions) {
-    if (halves.second.values().empty()) return nullptr;
-    const double share = halves.second_weight * (1.0 - halves.second_weight);
-    const auto in_db = [&](const std::optional<Metrics>& metrics) -> Json {
-        if (!metrics || !metrics->psnr_float_db) return nullptr;
-        return *metrics->psnr_float_db - 10.0 * std::log10(share);
-    };
-    const Comparison found = compare(halves.first.radiance, halves.second,
-                                     regions.values().empty() ? nullptr : &regions);
-    const Json whole = in_db(found.metrics);
-    if (whole.is_null()) return nullptr;
-    Json json{{"psnr_float_db", whole}, {"regions", Json::object()}};
-    for (const RegionInfo& info : kRegions) {
-        if (!found.regions) continue;
-        const auto& region = (*found.regions)[region_index(info.region)];
-        json["regions"][std::string(info.name)] = {{"psnr_float_db", in_db(region.metrics)}};
-    }
-    return json;
+    const RegionMap* const known = regions.empty() ? nullptr : &regions;
+    if (halves.second.empty()) return reference_error(halves.first, known);
+    return reference_error({halves.first.radiance, halves.second, halves.second_weight}, known);
 }
 
 RegionMap regions_if_known(const Frame& frame) {

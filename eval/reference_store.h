@@ -20,9 +20,8 @@ struct StoredReference {
     Image image;
     RegionMap regions;  ///< empty where the reference has no planes to make it from
     std::string file;   ///< relative to the run directory, without extension
-    /// Its own error in dB, from how its two halves differ: {"psnr_float_db":, "regions": {"edge":
-    /// {"psnr_float_db":}, ...}}. Null where there is no second half, as in a file, or the halves
-    /// are equal.
+    /// Its own error, from how its two halves differ or from its variance
+    /// (eval/reference_error.h). Null where it has neither.
     nlohmann::json error;
 };
 

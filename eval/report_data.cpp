@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "eval/group_statistics.h"
+#include "eval/metrics.h"
 #include "eval/run_directory.h"
 #include "filters/schemes.h"
 
@@ -117,6 +118,11 @@ int decimals_for(double least, int digits) {
     return std::clamp(digits - 1 - static_cast<int>(std::floor(std::log10(least))), 1, 7);
 }
 
+int decimals_of(ErrorScale scale, double least) {
+    if (scale == ErrorScale::decibel) return 2;
+    return scale == ErrorScale::similarity ? 4 : decimals_for(least, 2);
+}
+
 void set_decimals(ReportData& data) {
     double least_time = 0;
     double least_relmse = 0;
@@ -126,6 +132,18 @@ void set_decimals(ReportData& data) {
     for (const GroupSummary& group : data.groups) {
         lower(least_time, group.time_s);
         if (group.relmse) lower(least_relmse, group.relmse->mean);
+    }
+    for (const MetricInfo& info : all_metrics()) {
+        const std::string name(info.name);
+        double least = 0;
+        bool is_there = false;
+        for (const GroupSummary& group : data.groups) {
+            const auto found = group.metrics.find(name);
+            if (found == group.metrics.end()) continue;
+            is_there = true;
+            lower(least, found->second.mean);
+        }
+        if (is_there) data.metric_decimals[name] = decimals_of(info.scale, least);
     }
     data.time_decimals = decimals_for(least_time, 3);
     data.relmse_decimals = decimals_for(least_relmse, 2);

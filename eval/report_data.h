@@ -42,6 +42,7 @@ struct ReportData {
     std::vector<std::string> varying;  ///< parameters that tell groups apart
     int time_decimals = 3;             ///< so that the least time has three digits
     int relmse_decimals = 4;
+    std::map<std::string, int> metric_decimals;  ///< of the metrics that some group has
 
     [[nodiscard]] const nlohmann::json& row_of(const std::string& cell) const {
         return rows[row.at(cell)];

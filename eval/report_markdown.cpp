@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "eval/commands.h"
+#include "eval/reference_error.h"
 #include "eval/reference_quality.h"
 #include "eval/report_facts.h"
 #include "eval/report_sections.h"
@@ -240,6 +241,8 @@ std::string results(const ReportData& data) {
     std::string text =
         "\n## Results\n\nMeans over seeds with their 95 % intervals. The share is that of the time "
         "of path tracing at the spp that was asked for.\n";
+    if (std::ranges::any_of(data.groups, [](const auto& g) { return g.is_limited == true; }))
+        text += "\n≈R: " + plain(std::string(kLimitedFormula)) + ".\n";
     for (const std::string& scene : data.scenes) {
         text += "\n### " + plain(scene) + "\n\n" +
                 head({"result", "seeds", "spp", "psnr_float_db, dB", "interior, dB", "ssim",
@@ -247,9 +250,10 @@ std::string results(const ReportData& data) {
         for (const GroupSummary& group : data.groups) {
             if (group.scene != scene) continue;
             const bool is_traced = group.params.contains("spp");
-            const std::string psnr = is_identical(data, group, "psnr_float_db")
-                                         ? "identical"
-                                         : quality_text(group.psnr_float_db);
+            std::string psnr = is_identical(data, group, "psnr_float_db")
+                                   ? "identical"
+                                   : quality_text(group.psnr_float_db);
+            if (group.is_limited == true) psnr += " ≈R";
             text += row({code(short_name(group)), std::to_string(group.seeds),
                          is_traced ? parameter_text(group.params, "spp") : "", psnr,
                          quality_text(group.region_psnr_float_db[region_index(Region::interior)]),

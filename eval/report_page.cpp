@@ -84,6 +84,7 @@ Json data_json(const ReportData& data, const ReportPictures& pictures) {
             {"scenes", data.scenes},
             {"varying", data.varying},
             {"viewer", viewer_json(pictures)},
+            {"metrics", metric_list_json(data)},
             {"graphs", graphs_json(data)},
             {"convergence", convergence_json(data.convergence)},
             {"relmse_decimals", data.relmse_decimals},

@@ -8,6 +8,7 @@
 #include "eval/commands.h"
 #include "eval/html_text.h"
 #include "eval/metrics.h"
+#include "eval/reference_error.h"
 #include "eval/reference_quality.h"
 #include "eval/report_facts.h"
 #include "eval/report_sections.h"
@@ -57,7 +58,25 @@ std::string metrics_html() {
                 escaped(metric.formula) + "; " + (metric.higher_is_better ? "higher" : "lower") +
                 " is better</dd></div>\n";
     }
-    return html;
+    for (const SplitInfo& info : kSplitColumns) {
+        html += "<div><dt>" + escaped(info.name) + "</dt><dd>" + escaped(info.formula) +
+                "</dd></div>\n";
+    }
+    return html + "<div><dt>≈R</dt><dd>" + escaped(kLimitedFormula) + "</dd></div>\n";
+}
+
+nlohmann::json metric_list_json(const ReportData& data) {
+    Json list = Json::array();
+    for (const MetricInfo& metric : all_metrics()) {
+        const auto decimals = data.metric_decimals.find(std::string(metric.name));
+        if (decimals == data.metric_decimals.end()) continue;
+        list.push_back({{"name", metric.name},
+                        {"formula", metric.formula},
+                        {"unit", metric.scale == ErrorScale::decibel ? "dB" : ""},
+                        {"decimals", decimals->second},
+                        {"higher_is_better", metric.higher_is_better}});
+    }
+    return list;
 }
 
 std::string regions_html() {

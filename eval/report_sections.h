@@ -26,6 +26,8 @@ std::string run_command_text(const ReportData& data);
 /// A word as a shell takes it: quoted where it has to be.
 std::string shell_word(const std::string& text);
 std::string metrics_html();
+/// Of the metrics that some group has: name, formula, unit, decimals, higher_is_better.
+nlohmann::json metric_list_json(const ReportData& data);
 std::string regions_html();
 /// How good the references are for what they judge.
 std::string references_html(const ReportData& data);

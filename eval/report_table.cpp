@@ -8,6 +8,8 @@
 
 #include "eval/commands.h"
 #include "eval/html_text.h"
+#include "eval/metrics.h"
+#include "eval/reference_error.h"
 #include "eval/report_sections.h"
 
 namespace vecino {
@@ -20,6 +22,7 @@ struct Value {
     std::string text = "–";
     std::optional<double> number = std::nullopt;  ///< to sort by and to find the best
     std::string interval;
+    std::string badge = "";  ///< HTML
 };
 
 enum class Better { neither, higher, lower };
@@ -44,15 +47,23 @@ Value positive(double value, int decimals) {
     return value > 0 ? number(value, decimals) : Value{};
 }
 
+std::string limited_badge() {
+    return "<abbr class=\"limited\" title=\"" + escaped(kLimitedFormula) + "\">≈R</abbr>";
+}
+
 Value psnr_float(const ReportData& data, const GroupSummary& group) {
     Value value{psnr_float_text(data, group), std::nullopt, psnr_float_interval(group)};
     if (group.psnr_float_db) value.number = group.psnr_float_db->mean;
     if (value.text == "identical") value.number = kIdentical;
+    if (group.is_limited == true) value.badge = limited_badge();
     return value;
 }
 
 Value region_psnr(const GroupSummary& group, Region region) {
-    return estimate(group.region_psnr_float_db[region_index(region)], 2);
+    const std::size_t i = region_index(region);
+    Value value = estimate(group.region_psnr_float_db[i], 2);
+    if (group.region_is_limited[i] == true) value.badge = limited_badge();
+    return value;
 }
 
 Value psnr_8bit(const ReportData& data, const GroupSummary& group) {
@@ -84,9 +95,37 @@ std::vector<Column> parameter_columns(const ReportData& data) {
     return columns;
 }
 
+/// Of the metrics that some group has, those that the table does not show in a way of its own.
+void add_metric_columns(std::vector<Column>& columns, const ReportData& data) {
+    for (const MetricInfo& info : all_metrics()) {
+        const std::string name(info.name);
+        const auto decimals = data.metric_decimals.find(name);
+        if (name == "psnr_float_db" || name == "psnr_db" || decimals == data.metric_decimals.end())
+            continue;
+        columns.push_back({name, info.scale == ErrorScale::decibel ? "dB" : "",
+                           info.higher_is_better ? Better::higher : Better::lower,
+                           [name, digits = decimals->second](const GroupSummary& g) {
+                               const auto found = g.metrics.find(name);
+                               return found == g.metrics.end() ? Value{}
+                                                               : estimate(found->second, digits);
+                           }});
+    }
+}
+
+/// The parts of relmse, in the decimals of the whole.
+void add_relmse_columns(std::vector<Column>& columns, const ReportData& data) {
+    const int digits = data.relmse_decimals;
+    columns.push_back({"relmse noise", "", Better::lower, [digits](const GroupSummary& g) {
+                           return estimate(g.relmse_noise, digits);
+                       }});
+    columns.push_back({"relmse bias", "", Better::lower, [digits](const GroupSummary& g) {
+                           return estimate(g.relmse_bias, digits);
+                       }});
+}
+
 std::vector<Column> result_columns(const ReportData& data) {
     using Group = const GroupSummary&;
-    return {
+    std::vector<Column> columns = {
         {"psnr_float_db", "dB", Better::higher, [&](Group g) { return psnr_float(data, g); }},
         {"interior", "dB", Better::higher,
          [](Group g) { return region_psnr(g, Region::interior); }},
@@ -95,9 +134,10 @@ std::vector<Column> result_columns(const ReportData& data) {
         {"noise", "dB", Better::higher, [](Group g) { return estimate(g.noise_db, 2); }},
         {"bias", "dB", Better::higher, [](Group g) { return estimate(g.bias_db, 2); }},
         {"psnr_db", "dB", Better::higher, [&](Group g) { return psnr_8bit(data, g); }},
-        {"ssim", "", Better::higher, [](Group g) { return estimate(g.ssim, 4); }},
-        {"relmse", "", Better::lower,
-         [&](Group g) { return estimate(g.relmse, data.relmse_decimals); }},
+    };
+    add_metric_columns(columns, data);
+    add_relmse_columns(columns, data);
+    const std::vector<Column> others = {
         {"time", "s", Better::lower,
          [&](Group g) { return positive(g.time_s, data.time_decimals); }},
         {"time share", "% of path", Better::lower,
@@ -111,6 +151,8 @@ std::vector<Column> result_columns(const ReportData& data) {
              return g.seeds > 0 ? number(static_cast<double>(g.dropped_samples), 0) : Value{};
          }},
     };
+    columns.insert(columns.end(), others.begin(), others.end());
+    return columns;
 }
 
 std::string header_cell(const std::string& name, const std::string& unit, Better better) {
@@ -125,7 +167,7 @@ std::string data_cell(const Value& value, bool is_best) {
     if (value.number) html += " data-value=\"" + number_text(*value.number, 9) + "\"";
     html += is_best ? "><b>" + escaped(value.text) + "</b>" : ">" + escaped(value.text);
     if (!value.interval.empty()) html += "<span class=\"ci\">" + value.interval + "</span>";
-    return html + "</td>";
+    return html + value.badge + "</td>";
 }
 
 /// The text of a scene's best value in a column. Texts are compared, so that what reads alike is

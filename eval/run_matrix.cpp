@@ -15,6 +15,7 @@
 #include "eval/equal_time.h"
 #include "eval/frame_jobs.h"
 #include "eval/progress.h"
+#include "eval/reference_error.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
 
@@ -23,6 +24,20 @@ namespace {
 
 std::string frame_key(const std::string& scene, const RenderSettings& settings) {
     return frame_json(scene, settings).dump();
+}
+
+/// Of the whole image, and of its regions.
+void mark_limited(nlohmann::json& row) {
+    if (!row.contains("metrics")) return;
+    const auto flag = [&](const nlohmann::json& metrics, const std::string& region) {
+        const auto is_limited =
+            limited_by_reference(metrics, part_of_error(row["reference_error"], region));
+        return is_limited ? nlohmann::json(*is_limited) : nlohmann::json();
+    };
+    row["limited_by_reference"] = flag(row["metrics"], "");
+    if (!row["metrics"].contains("regions")) return;
+    for (const auto& [name, region] : row["metrics"]["regions"].items())
+        row["limited_regions"][name] = flag(region, name);
 }
 
 double traced_samples(const RenderSettings& settings) {
@@ -154,6 +169,8 @@ class Runner {
         if (row.value("status", nlohmann::json()) != "ok") return CellState::failed;
         if (!std::filesystem::exists(directory_.file("cells/" + cell.name + "/image.exr")))
             return CellState::missing;
+        for (const std::string& metric : matrix_.metrics)
+            if (!row["metrics"].contains(metric)) return CellState::missing;
         const bool same_program =
             row.value("build", nlohmann::json()) == build_ &&
             row.value("simd_width", nlohmann::json()) == simd_width_ &&
@@ -321,6 +338,7 @@ class Runner {
                            {"simd_width", simd_width_},
                            {"host", run_["versions"]["cpu"]}};
         row.update(cell_result(cell, input, directory_));
+        mark_limited(row);
         directory_.append(row);
         rows_[cell.name] = row;
         ++done_cells_;

@@ -18,45 +18,36 @@ double sum_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Sum of squares of the distances from their mean.
-double spread_of(const std::vector<double>& values) {
-    const double mean = sum_of(values) / static_cast<double>(values.size());
-    double sum = 0;
-    for (const double value : values) sum += (value - mean) * (value - mean);
-    return sum;
-}
+/// Weighted sums of squares over pixels and channels, by seed, in one space.
+struct Squares {
+    explicit Squares(std::size_t seeds) : error(seeds), deviation(seeds) {}
 
-/// Sums of squares over pixels and channels, by seed.
-struct Sums {
-    explicit Sums(std::size_t seeds) : error(seeds), deviation(seeds) {}
-
-    std::size_t pixels = 0;
     std::vector<double> error;      ///< from the reference
     std::vector<double> deviation;  ///< from the mean over seeds
-    double relative = 0;            ///< the same of linear values over r^2 + 0.01, of all seeds
 
-    /// One channel value of every seed, linear.
-    void add_linear(const std::vector<double>& values, double reference) {
-        relative += spread_of(values) / (reference * reference + 0.01);
-    }
-
-    /// One channel value of every seed, as displayed.
-    void add(const std::vector<double>& values, double reference) {
+    /// One channel value of every seed.
+    void add(const std::vector<double>& values, double reference, double weight) {
         const double mean = sum_of(values) / static_cast<double>(values.size());
         for (std::size_t i = 0; i < values.size(); ++i) {
-            error[i] += (values[i] - reference) * (values[i] - reference);
-            deviation[i] += (values[i] - mean) * (values[i] - mean);
+            error[i] += weight * (values[i] - reference) * (values[i] - reference);
+            deviation[i] += weight * (values[i] - mean) * (values[i] - mean);
         }
     }
 };
 
+struct Sums {
+    explicit Sums(std::size_t seeds) : display(seeds), relative(seeds) {}
+
+    std::size_t pixels = 0;
+    Squares display, relative;
+};
+
 /// With q_i the mean of (X_i - mean over seeds)^2 and Q their sum, the mean of (X_i - X_j)^2
 /// sums up to n Q over all pairs and to n q_i + Q over those of seed i: no pair need be visited.
-SeedStatistics statistics_of(const Sums& sums) {
-    SeedStatistics result;
-    result.pixels = sums.pixels;
-    if (sums.pixels == 0) return result;
-    const auto per_value = [&](double sum) { return sum / (3 * static_cast<double>(sums.pixels)); };
+ErrorSplit split_of(const Squares& sums, std::size_t pixels) {
+    ErrorSplit result;
+    if (pixels == 0) return result;
+    const auto per_value = [&](double sum) { return sum / (3 * static_cast<double>(pixels)); };
     std::ranges::transform(sums.error, std::back_inserter(result.mse), per_value);
     const auto n = static_cast<double>(sums.error.size());
     if (n < 2) return result;
@@ -64,7 +55,6 @@ SeedStatistics statistics_of(const Sums& sums) {
     const double noise = total / (n - 1);
     result.noise = noise;
     result.bias2 = sum_of(result.mse) / n - noise;
-    result.relative_variance = per_value(sums.relative) / (n - 1);
     if (n < 3) return result;
     for (std::size_t i = 0; i < sums.error.size(); ++i) {
         const double own = per_value(sums.deviation[i]);
@@ -72,6 +62,14 @@ SeedStatistics statistics_of(const Sums& sums) {
         result.noise_by_seed.push_back(n * noise - (n - 1) * noise_without);
         result.bias2_by_seed.push_back(result.mse[i] - result.noise_by_seed[i]);
     }
+    return result;
+}
+
+SeedStatistics statistics_of(const Sums& sums) {
+    SeedStatistics result;
+    static_cast<ErrorSplit&>(result) = split_of(sums.display, sums.pixels);
+    result.relative = split_of(sums.relative, sums.pixels);
+    result.pixels = sums.pixels;
     return result;
 }
 
@@ -104,12 +102,13 @@ std::vector<Sums> sum_up(std::span<const Image> images, const Image& reference,
         if (region) ++region->pixels;
         for (int c = 0; c < 3; ++c) {
             fill(display, p, c);
-            sums[0].add(values, static_cast<double>(wanted[c]));
-            if (region) region->add(values, static_cast<double>(wanted[c]));
+            sums[0].display.add(values, static_cast<double>(wanted[c]), 1);
+            if (region) region->display.add(values, static_cast<double>(wanted[c]), 1);
             const auto linear = static_cast<double>(reference.values()[p][c]);
+            const double weight = 1 / (linear * linear + 0.01);
             fill(images, p, c);
-            sums[0].add_linear(values, linear);
-            if (region) region->add_linear(values, linear);
+            sums[0].relative.add(values, linear, weight);
+            if (region) region->relative.add(values, linear, weight);
         }
     }
     return sums;
@@ -119,14 +118,19 @@ Json optional_json(const std::optional<double>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
-Json one_json(const SeedStatistics& s) {
-    return {{"pixels", s.pixels},
-            {"mse", s.mse},
+Json split_json(const ErrorSplit& s) {
+    return {{"mse", s.mse},
             {"noise", optional_json(s.noise)},
             {"bias2", optional_json(s.bias2)},
-            {"relative_variance", optional_json(s.relative_variance)},
             {"noise_by_seed", s.noise_by_seed},
             {"bias2_by_seed", s.bias2_by_seed}};
+}
+
+Json one_json(const SeedStatistics& s) {
+    Json json = split_json(s);
+    json["pixels"] = s.pixels;
+    json["relative"] = split_json(s.relative);
+    return json;
 }
 
 std::optional<double> read_optional(const JsonValue& json) {
@@ -140,20 +144,33 @@ std::vector<double> read_numbers(const JsonValue& json) {
     return numbers;
 }
 
-SeedStatistics read_one(const JsonValue& json) {
-    SeedStatistics s;
-    s.pixels =
-        static_cast<std::size_t>(json.at("pixels").integer(0, std::numeric_limits<int>::max()));
+ErrorSplit read_split(const JsonValue& json) {
+    ErrorSplit s;
     s.mse = read_numbers(json.at("mse"));
     s.noise = read_optional(json.at("noise"));
     s.bias2 = read_optional(json.at("bias2"));
-    s.relative_variance = read_optional(json.at("relative_variance"));
     s.noise_by_seed = read_numbers(json.at("noise_by_seed"));
     s.bias2_by_seed = read_numbers(json.at("bias2_by_seed"));
     return s;
 }
 
+SeedStatistics read_one(const JsonValue& json) {
+    SeedStatistics s;
+    static_cast<ErrorSplit&>(s) = read_split(json);
+    s.pixels =
+        static_cast<std::size_t>(json.at("pixels").integer(0, std::numeric_limits<int>::max()));
+    s.relative = read_split(json.at("relative"));
+    return s;
+}
+
 }  // namespace
+
+ErrorSplit ErrorSplit::without_reference(double reference_mse) const {
+    ErrorSplit result = *this;
+    if (result.bias2) *result.bias2 -= reference_mse;
+    for (double& value : result.bias2_by_seed) value -= reference_mse;
+    return result;
+}
 
 std::optional<SeedStatisticsByRegion> seed_statistics(std::span<const Image> images,
                                                       const Image& reference,

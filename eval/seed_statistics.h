@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Noise and bias apart: what renders that differ in their seed alone say about how much of their
-// error another seed would change. All errors are means over pixels and channels of squares of
-// display values (clipped to [0,1], sRGB-encoded): the mean squared error behind psnr_float_db.
-//
-// With X_i the image of seed i of n and R the reference:
-//   mse_i   mean (X_i - R)^2
-//   noise   mean over pixels and channels of the sample variance over seeds; unbiased, and the same
-//           as half of the mean of (X_i - X_j)^2 over all pairs of seeds
-//   bias2   mean over seeds of mse_i, less noise: an unbiased estimate of the squared bias. It
-//           includes the reference's own error, and can be below 0 where there is little bias.
-// One is of linear values, as relMSE is, of which it is the part that noise makes:
-//   relative_variance   mean of (sample variance over seeds) / (R^2 + 0.01)
+// Variance and bias apart: what renders that differ in their seed alone say about how much of their
+// error another seed would change. With X_i the image of seed i of n and R the reference, and all
+// means over pixels and channels:
+//   mse_i   mean of w (X_i - R)^2
+//   noise   mean of w (sample variance over seeds): unbiased, and the same as half of the mean of
+//           w (X_i - X_j)^2 over all pairs of seeds
+//   bias2   mean over seeds of mse_i, less noise: an unbiased estimate of w (expected X - R)^2, and
+//           the same as the error of the mean image less noise/n. It still holds the reference's
+//           own error, which without_reference takes off, and can be below 0 where there is little
+//           bias.
+// Mean over seeds of mse = bias2 + noise, always. In two spaces: of display values (clipped to
+// [0,1], sRGB-encoded) with w = 1, which splits the error behind psnr_float_db, and of linear
+// values with w = 1 / (R^2 + 0.01), which splits relmse.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/json_read.h"
@@ -25,19 +28,49 @@
 
 namespace vecino {
 
-struct SeedStatistics {
-    std::size_t pixels = 0;
-    std::vector<double> mse;                  ///< by seed; empty without pixels
-    std::optional<double> noise;              ///< none below 2 seeds, or without pixels
-    std::optional<double> bias2;              ///< none where noise is
-    std::optional<double> relative_variance;  ///< none where noise is
+/// An error and its two parts, in one space.
+struct ErrorSplit {
+    std::vector<double> mse;      ///< by seed; empty without pixels
+    std::optional<double> noise;  ///< none below 2 seeds, or without pixels
+    std::optional<double> bias2;  ///< none where noise is
     // Jackknife pseudo-values, for estimate(): their means are noise and bias2, and their spread
     // tells how sure those are. Empty below 3 seeds, or without pixels.
     std::vector<double> noise_by_seed;  ///< n noise - (n - 1) (noise without seed i)
     std::vector<double> bias2_by_seed;  ///< mse_i - noise_by_seed_i
 
+    /// The same with the reference's own mean squared error taken off bias2: unbiased towards what
+    /// a perfect reference would say.
+    [[nodiscard]] ErrorSplit without_reference(double reference_mse) const;
+
+    friend bool operator==(const ErrorSplit&, const ErrorSplit&) = default;
+};
+
+/// The split of display values, and beside it that of relmse.
+struct SeedStatistics : ErrorSplit {
+    std::size_t pixels = 0;
+    ErrorSplit relative;
+
     friend bool operator==(const SeedStatistics&, const SeedStatistics&) = default;
 };
+
+/// A row of what is shown of a split.
+struct SplitInfo {
+    std::string_view name;     ///< of the column
+    std::string_view formula;  ///< one line
+};
+
+/// Columns of summaries: variance and bias of psnr_float_db's error, then of relmse.
+inline constexpr std::array<SplitInfo, 4> kSplitColumns = {{
+    {"noise",
+     "10 log10(1 / V) dB, V = mean over pixels and channels of the sample variance over seeds of "
+     "display values: the part of psnr_float_db's error that another seed changes"},
+    {"bias",
+     "10 log10(1 / B) dB, B = mean over seeds of (x-r)^2 - V - E, E the reference's own error: the "
+     "part of psnr_float_db's error that no seed changes, with what clipping and encoding make of "
+     "noise; none where B is not above 0"},
+    {"relmse noise", "mean of (sample variance over seeds) / (r^2 + 0.01), linear"},
+    {"relmse bias", "relmse - relmse noise - that of the reference's own error"},
+}};
 
 struct SeedStatisticsByRegion {
     SeedStatistics whole;
@@ -53,9 +86,9 @@ std::optional<SeedStatisticsByRegion> seed_statistics(std::span<const Image> ima
                                                       const Image& reference,
                                                       const RegionMap* regions = nullptr);
 
-/// {"pixels":, "mse": [...], "noise":, "bias2":, "relative_variance":, "noise_by_seed": [...],
-/// "bias2_by_seed": [...]}, null for none; with regions also "regions": {"emitter": {the same},
-/// ...}.
+/// {"pixels":, "mse": [...], "noise":, "bias2":, "noise_by_seed": [...], "bias2_by_seed": [...],
+/// "relative": {the same without "pixels"}}, null for none; with regions also "regions":
+/// {"emitter": {the same}, ...}.
 nlohmann::json seed_statistics_json(const SeedStatisticsByRegion& statistics);
 
 /// Reads what seed_statistics_json made, bit for bit; other keys play no part. Throws Error(usage)

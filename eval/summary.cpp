@@ -7,6 +7,8 @@
 #include <map>
 
 #include "core/timing.h"
+#include "eval/metrics.h"
+#include "eval/reference_error.h"
 
 namespace vecino {
 namespace {
@@ -55,13 +57,50 @@ PerRegion<std::optional<Estimate>> region_metric(const std::vector<const Json*>&
 std::optional<Estimate> error_db(const std::optional<double>& mean,
                                  const std::vector<double>& by_seed) {
     if (!mean || !(*mean > 0)) return std::nullopt;
-    const auto to_db = [](double value) { return -10.0 * std::log10(value); };
-    Estimate result{to_db(*mean), {}, {}};
+    Estimate result{decibels_of(*mean), {}, {}};
     if (by_seed.size() < 2) return result;
     const Estimate linear = estimate(by_seed);
-    if (*linear.low > 0) result.high = to_db(*linear.low);
-    result.low = to_db(*linear.high);
+    if (*linear.low > 0) result.high = decibels_of(*linear.low);
+    if (*linear.high > 0) result.low = decibels_of(*linear.high);
     return result;
+}
+
+/// With an interval where there are enough seeds for one.
+std::optional<Estimate> mean_of(const std::optional<double>& mean,
+                                const std::vector<double>& by_seed) {
+    if (!mean) return std::nullopt;
+    return by_seed.size() < 2 ? Estimate{*mean, {}, {}} : estimate(by_seed);
+}
+
+std::map<std::string, Estimate> all_metrics_of(const std::vector<const Json*>& rows) {
+    std::map<std::string, Estimate> metrics;
+    for (const MetricInfo& info : all_metrics()) {
+        const std::string name(info.name);
+        const auto estimator = info.scale == ErrorScale::decibel ? estimate_db : estimate;
+        if (const auto found = metric(rows, name.c_str(), estimator)) metrics.emplace(name, *found);
+    }
+    return metrics;
+}
+
+Json mean_json(const std::optional<Estimate>& value) {
+    return value ? Json(value->mean) : Json();
+}
+
+/// Of the means over seeds. A group whose every image equals its reference has no decibels.
+void set_limits(GroupSummary& group, const Json& error) {
+    const bool is_known = error.is_object() && error.value("psnr_float_db", Json()).is_number();
+    if (is_known) group.reference_db = error["psnr_float_db"].get<double>();
+    if (error.is_object() && error.value("relmse", Json()).is_number())
+        group.reference_relmse = error["relmse"].get<double>();
+    const Json whole{{"psnr_float_db", mean_json(group.psnr_float_db)},
+                     {"relmse", mean_json(group.relmse)}};
+    group.is_limited = limited_by_reference(whole, error);
+    for (const RegionInfo& info : kRegions) {
+        const std::size_t i = region_index(info.region);
+        const Json part{{"psnr_float_db", mean_json(group.region_psnr_float_db[i])}};
+        group.region_is_limited[i] =
+            limited_by_reference(part, part_of_error(error, std::string(info.name)));
+    }
 }
 
 GroupSummary summarise_group(const std::vector<const Json*>& all) {
@@ -88,7 +127,9 @@ GroupSummary summarise_group(const std::vector<const Json*>& all) {
     group.psnr_db = metric(rows, "psnr_db", estimate_db);
     group.ssim = metric(rows, "ssim", estimate);
     group.relmse = metric(rows, "relmse", estimate);
+    group.metrics = all_metrics_of(rows);
     group.region_psnr_float_db = region_metric(rows, "psnr_float_db");
+    set_limits(group, rows.front()->value("reference_error", Json()));
     group.times_s = values_of(rows, "time_s", "total");
     group.time_s = median(group.times_s);
     group.reconstruct_s = median(values_of(rows, "time_s", "reconstruct"));
@@ -111,8 +152,13 @@ void set_statistics(GroupSummary& group, const StatisticsByGroup& statistics) {
     if (found == statistics.end()) return;
     group.statistics = found->second;
     const SeedStatistics& whole = found->second.whole;
-    group.noise_db = error_db(whole.noise, whole.noise_by_seed);
-    group.bias_db = error_db(whole.bias2, whole.bias2_by_seed);
+    const double own = group.reference_db ? mse_of(*group.reference_db) : 0.0;
+    const ErrorSplit display = whole.without_reference(own);
+    group.noise_db = error_db(display.noise, display.noise_by_seed);
+    group.bias_db = error_db(display.bias2, display.bias2_by_seed);
+    const ErrorSplit relative = whole.relative.without_reference(group.reference_relmse);
+    group.relmse_noise = mean_of(relative.noise, relative.noise_by_seed);
+    group.relmse_bias = mean_of(relative.bias2, relative.bias2_by_seed);
 }
 
 std::string cell_text(const std::optional<Estimate>& e, int digits) {
@@ -170,6 +216,40 @@ std::vector<GroupSummary> summarise(const std::vector<Json>& rows,
     return groups;
 }
 
+namespace {
+
+Json flag_json(const std::optional<bool>& flag) {
+    return flag ? Json(*flag) : Json();
+}
+
+Json metrics_json(const GroupSummary& g) {
+    Json metrics = Json::object();
+    for (const auto& [name, value] : g.metrics) metrics[name] = estimate_json(value);
+    return metrics;
+}
+
+Json limited_regions_json(const GroupSummary& g) {
+    Json regions;
+    for (const RegionInfo& info : kRegions)
+        regions[std::string(info.name)] = flag_json(g.region_is_limited[region_index(info.region)]);
+    return regions;
+}
+
+/// What the columns and the mark mean, where a table has them.
+std::string table_notes(const std::vector<GroupSummary>& groups) {
+    std::string notes;
+    if (std::ranges::any_of(groups, [](const GroupSummary& g) { return g.noise_db.has_value(); })) {
+        for (std::size_t i = 0; i < 2; ++i)
+            notes += std::string(kSplitColumns[i].name) + ": " +
+                     std::string(kSplitColumns[i].formula) + "\n";
+    }
+    if (std::ranges::any_of(groups, [](const GroupSummary& g) { return g.is_limited == true; }))
+        notes += "* " + std::string(kLimitedFormula) + "\n";
+    return notes;
+}
+
+}  // namespace
+
 Json summary_json(const GroupSummary& g) {
     Json regions;
     for (const RegionInfo& info : kRegions) {
@@ -177,8 +257,14 @@ Json summary_json(const GroupSummary& g) {
         regions[std::string(info.name)] = estimate_json(value);
     }
     return {{"regions", regions},
+            {"metrics", metrics_json(g)},
             {"noise_db", estimate_json(g.noise_db)},
             {"bias_db", estimate_json(g.bias_db)},
+            {"relmse_noise", estimate_json(g.relmse_noise)},
+            {"relmse_bias", estimate_json(g.relmse_bias)},
+            {"reference_db", g.reference_db ? Json(*g.reference_db) : Json()},
+            {"limited_by_reference", flag_json(g.is_limited)},
+            {"limited_regions", limited_regions_json(g)},
             {"group", g.group},
             {"scene", g.scene},
             {"method", g.method},
@@ -205,20 +291,22 @@ std::string summary_table(const std::vector<GroupSummary>& groups) {
         name.resize(width, ' ');
         return name;
     };
-    char line[128];
-    std::snprintf(line, sizeof line, "  %8s %6s  %8s  %7s  %9s  %9s  %7s\n", "psnr dB", "",
-                  "interior", "ssim", "relmse", "time s", "share");
+    char line[160];
+    std::snprintf(line, sizeof line, "  %8s  %6s  %8s  %7s  %7s  %7s  %9s  %9s  %7s\n", "psnr dB",
+                  "", "interior", "noise", "bias", "ssim", "relmse", "time s", "share");
     std::string table = padded("cell") + line;
     for (const GroupSummary& g : groups) {
         const auto& interior = g.region_psnr_float_db[region_index(Region::interior)];
-        std::snprintf(line, sizeof line, "  %8s %6s  %8s  %7s  %9s  %9s  %7s\n",
-                      cell_text(g.psnr_float_db, 2).c_str(), interval_text(g.psnr_float_db).c_str(),
-                      cell_text(interior, 2).c_str(), cell_text(g.ssim, 4).c_str(),
-                      cell_text(g.relmse, 6).c_str(), time_text(g.time_s, 4, "").c_str(),
+        std::snprintf(line, sizeof line, "  %8s%s %6s  %8s  %7s  %7s  %7s  %9s  %9s  %7s\n",
+                      cell_text(g.psnr_float_db, 2).c_str(), g.is_limited == true ? "*" : " ",
+                      interval_text(g.psnr_float_db).c_str(), cell_text(interior, 2).c_str(),
+                      cell_text(g.noise_db, 2).c_str(), cell_text(g.bias_db, 2).c_str(),
+                      cell_text(g.ssim, 4).c_str(), cell_text(g.relmse, 6).c_str(),
+                      time_text(g.time_s, 4, "").c_str(),
                       time_text(100.0 * g.time_share, 2, "%").c_str());
         table += padded(g.group) + line;
     }
-    return table;
+    return table + table_notes(groups);
 }
 
 }  // namespace vecino

@@ -26,9 +26,15 @@ struct GroupSummary {
     std::vector<std::uint32_t> seeds_done;                         ///< which
     std::optional<Estimate> psnr_float_db, psnr_db, ssim, relmse;  ///< none: no finite value
     PerRegion<std::optional<Estimate>> region_psnr_float_db;
+    std::map<std::string, Estimate> metrics;    ///< by name, those that every finished seed has
     std::optional<Estimate> noise_db, bias_db;  ///< parts of psnr_float_db's error, in its dB
-    double time_s = 0;                          ///< total, median over seeds
-    std::vector<double> times_s;                ///< total, by seed
+    std::optional<Estimate> relmse_noise, relmse_bias;  ///< parts of relmse
+    std::optional<double> reference_db;                 ///< the reference's own psnr_float_db
+    double reference_relmse = 0;     ///< its own relmse; 0 where that is not known
+    std::optional<bool> is_limited;  ///< by the reference (eval/reference_error.h)
+    PerRegion<std::optional<bool>> region_is_limited;
+    double time_s = 0;            ///< total, median over seeds
+    std::vector<double> times_s;  ///< total, by seed
     double reconstruct_s = 0;
     double trace_s = 0;     ///< median over seeds; 0 where nothing was traced
     std::string against;    ///< the group of path tracing that its time is a share of
@@ -54,7 +60,7 @@ nlohmann::json estimate_json(const std::optional<Estimate>& estimate);
 
 nlohmann::json summary_json(const GroupSummary& group);
 
-/// A table for a terminal.
+/// A table for a terminal, with what its columns mean.
 std::string summary_table(const std::vector<GroupSummary>& groups);
 
 }  // namespace vecino

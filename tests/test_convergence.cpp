@@ -31,7 +31,7 @@ GroupSummary path_group(const nlohmann::json& params, int spp, const Law& law) {
     const double error = law.factor * std::pow(spp, law.slope);
     group.relmse = Estimate{error, 0.9 * error, 1.1 * error};
     group.trace_s = law.s_per_sample * spp;
-    group.statistics->whole.relative_variance = 0.5 * error;
+    group.statistics->whole.relative.noise = 0.5 * error;
     group.psnr_float_db = Estimate{30, {}, {}};
     return group;
 }

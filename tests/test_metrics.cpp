@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <set>
 #include <string>
 
-#include "core/color.h"
 #include "core/error.h"
 #include "eval/metrics.h"
 #include "tests/catch.h"
+#include "tests/metric_patterns.h"
 
 using namespace vecino;
 
@@ -16,37 +15,6 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
-
-/// 0..255 from pixel, channel and seed; integer arithmetic, the same in the script below.
-std::uint32_t hash8(int x, int y, int c, std::uint32_t seed) {
-    std::uint32_t h = static_cast<std::uint32_t>(x) * 73856093u ^
-                      static_cast<std::uint32_t>(y) * 19349663u ^
-                      static_cast<std::uint32_t>(c) * 83492791u ^ seed * 2654435761u;
-    h = (h ^ h >> 13) * 0x5bd1e995u;
-    return (h ^ h >> 15) & 255u;
-}
-
-std::uint32_t noise(int x, int y, int c, std::uint32_t seed) {
-    return hash8(x, y, c, seed);
-}
-
-std::uint32_t ramp(int x, int y, int c, std::uint32_t seed) {
-    return static_cast<std::uint32_t>((5 * x + 3 * y + 40 * c) % 200) + hash8(x, y, c, seed) % 16;
-}
-
-using Pattern = std::uint32_t (*)(int x, int y, int c, std::uint32_t seed);
-
-/// The linear image whose 8-bit form holds the pattern; offset (in 8-bit steps) stays below the
-/// quantisation.
-Image linear_image(Pattern pattern, Extent size, std::uint32_t seed, float offset = 0) {
-    Image image(size);
-    for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x)
-            for (int c = 0; c < 3; ++c)
-                image(x, y)[c] =
-                    srgb_decode((static_cast<float>(pattern(x, y, c, seed)) + offset) / 255.0f);
-    return image;
-}
 
 Metrics metrics_of(const Image& test, const Image& reference) {
     const Comparison comparison = compare(test, reference);
@@ -129,7 +97,9 @@ TEST_CASE("identical images have null psnr, ssim 1 and no error", "[metrics]") {
     CHECK(metrics.identical_8bit);
     CHECK(metrics.ssim.value() == 1.0);
     CHECK(metrics.ssim_reason.empty());
+    CHECK(metrics.flip == 0.0);
     CHECK(metrics.relmse == 0.0);
+    CHECK(metrics.smape == 0.0);
     CHECK(metrics.mae == 0.0);
     CHECK(metrics.max_error == 0.0);
     CHECK(metrics.p99_error == 0.0);
@@ -246,18 +216,21 @@ TEST_CASE("images of different sizes are not compared and the error names both",
 }
 
 TEST_CASE("every metric is better for the smaller disturbance", "[metrics]") {
-    const Image reference = linear_image(ramp, {24, 24}, 1);
+    const Image reference = linear_image(ramp, {161, 161}, 1);
     Image slight = reference, strong = reference;
-    for (int y = 0; y < 24; ++y)
-        for (int x = 0; x < 24; ++x) {
+    for (int y = 0; y < 161; ++y)
+        for (int x = 0; x < 161; ++x) {
             const float sign = (x + y) % 2 == 0 ? 1.0f : -1.0f;
             slight(x, y) += sign * 0.01f;
             strong(x, y) += sign * 0.05f;
         }
     const auto info = GENERATE(from_range(all_metrics()));
     CAPTURE(info.name);
-    const double with_slight = info.value(metrics_of(slight, reference)).value();
-    const double with_strong = info.value(metrics_of(strong, reference)).value();
+    const auto measured = [&](const Image& test) {
+        return info.value(compare(test, reference, nullptr, metrics_on_request()).metrics.value());
+    };
+    const double with_slight = measured(slight).value();
+    const double with_strong = measured(strong).value();
     CHECK((info.higher_is_better ? with_slight > with_strong : with_slight < with_strong));
 }
 
@@ -266,11 +239,15 @@ TEST_CASE("the table of metrics names each value of the result once", "[metrics]
     metrics.psnr_float_db = 1;
     metrics.psnr_db = 2;
     metrics.ssim = 3;
-    metrics.relmse = 4;
-    metrics.mae = 5;
-    metrics.max_error = 6;
-    metrics.p99_error = 7;
-    metrics.worst_tile_psnr_db = 8;
+    metrics.ms_ssim = 4;
+    metrics.flip = 5;
+    metrics.hdr_flip = 6;
+    metrics.relmse = 7;
+    metrics.smape = 8;
+    metrics.mae = 9;
+    metrics.max_error = 10;
+    metrics.p99_error = 11;
+    metrics.worst_tile_psnr_db = 12;
     std::set<std::string> names;
     double expected = 0;
     for (const MetricInfo& info : all_metrics()) {
@@ -279,6 +256,7 @@ TEST_CASE("the table of metrics names each value of the result once", "[metrics]
         CHECK(info.value(metrics).value() == ++expected);
         CHECK(info.formula.find('\n') == std::string_view::npos);
     }
-    CHECK(names == std::set<std::string>{"psnr_float_db", "psnr_db", "ssim", "relmse", "mae",
-                                         "max_error", "p99_error", "worst_tile_psnr_db"});
+    CHECK(names == std::set<std::string>{"psnr_float_db", "psnr_db", "ssim", "ms_ssim", "flip",
+                                         "hdr_flip", "relmse", "smape", "mae", "max_error",
+                                         "p99_error", "worst_tile_psnr_db"});
 }

@@ -194,10 +194,11 @@ TEST_CASE("a region's largest and 99th percentile errors are of its own values",
 
 TEST_CASE("a region that is the whole image has the whole image's metrics", "[metrics][regions]") {
     const RegionMap regions(kSize, Region::edge);
-    const Comparison comparison = compare(noisy_ramp(kSize, 7), noisy_ramp(kSize, 8), &regions);
+    const Comparison comparison =
+        compare(noisy_ramp(kSize, 7), noisy_ramp(kSize, 8), &regions, metrics_on_request());
     for (const MetricInfo& info : all_metrics()) {
         CAPTURE(info.name);
-        if (info.name == "worst_tile_psnr_db") continue;  // of whole images alone
+        if (info.name == "ms_ssim" || info.name == "worst_tile_psnr_db") continue;  // of the whole
         CHECK(info.value(metrics_of(comparison, Region::edge)).value() ==
               Approx(info.value(*comparison.metrics).value()).epsilon(1e-13));
     }
@@ -270,7 +271,7 @@ TEST_CASE("a comparison's JSON has regions only if they were given", "[metrics][
         if (region == Region::edge) region = Region::interior;
     const Image test = random_image(kSize, 1), reference = random_image(kSize, 2);
     CHECK_FALSE(comparison_json(compare(test, reference)).contains("regions"));
-    const auto json = comparison_json(compare(test, reference, &regions));
+    const auto json = comparison_json(compare(test, reference, &regions, metrics_on_request()));
     REQUIRE(json["regions"].size() == kRegions.size());
     const auto pixels = region_pixels(regions);
     for (const RegionInfo& info : kRegions) {
@@ -279,10 +280,11 @@ TEST_CASE("a comparison's JSON has regions only if they were given", "[metrics][
         CHECK(region["pixels"] == pixels[region_index(info.region)]);
         for (const MetricInfo& metric : all_metrics()) {
             CAPTURE(metric.name);
-            REQUIRE(region.contains(metric.name));
-            const bool has_none =
-                info.region == Region::edge || metric.name == "worst_tile_psnr_db";
-            CHECK(region[std::string(metric.name)].is_null() == has_none);
+            const bool is_measured = info.region != Region::edge;
+            const bool is_of_whole = metric.name == "ms_ssim" || metric.name == "worst_tile_psnr_db";
+            REQUIRE(region.contains(metric.name) == (is_measured || !metric.is_on_request));
+            if (is_of_whole || !region.contains(metric.name)) continue;
+            CHECK(region[std::string(metric.name)].is_null() == !is_measured);
         }
         CHECK(region["identical_8bit"] == false);
     }

@@ -250,11 +250,11 @@ TEST_CASE("the relative variance is the part of relMSE that noise makes", "[seed
     }
     const double of_mean = compare(mean_image, reference).metrics->relmse;
     CHECK(of_mean < 0.9 * relmse);
-    CHECK(*found->whole.relative_variance * 0.75 == Approx(relmse - of_mean).epsilon(1e-4));
+    CHECK(*found->whole.relative.noise * 0.75 == Approx(relmse - of_mean).epsilon(1e-4));
     double by_region = 0;
     for (const SeedStatistics& s : *found->regions)
-        by_region += static_cast<double>(s.pixels) / (30 * 20) * *s.relative_variance;
-    CHECK(*found->whole.relative_variance == close_to(by_region));
+        by_region += static_cast<double>(s.pixels) / (30 * 20) * *s.relative.noise;
+    CHECK(*found->whole.relative.noise == close_to(by_region));
 }
 
 TEST_CASE("intervals from pseudo-values hold the truth about 19 times in 20", "[seed_statistics]") {
@@ -287,7 +287,7 @@ TEST_CASE("few seeds say less", "[seed_statistics]") {
     CHECK(with(1).mse.size() == 1);
     CHECK_FALSE(with(1).noise);
     CHECK_FALSE(with(1).bias2);
-    CHECK_FALSE(with(1).relative_variance);
+    CHECK_FALSE(with(1).relative.noise);
     CHECK(with(1).noise_by_seed.empty());
     CHECK(with(2).noise);
     CHECK(with(2).bias2);
