@@ -23,7 +23,6 @@ constexpr std::string_view kParts[] = {"axes",      "fixed",   "images",
                                        "reference", "measure", "reproduction"};
 
 RenderSettings read_reference(const JsonValue& json) {
-    json.require_keys(kReferenceKeys);
     RenderSettings settings;
     for (const RenderOption& row : render_options()) {
         const bool known = std::ranges::find(kReferenceKeys, row.name) != std::end(kReferenceKeys);
@@ -33,9 +32,14 @@ RenderSettings read_reference(const JsonValue& json) {
 }
 
 void read_reference(const JsonValue& json, Matrix& matrix) {
+    std::vector<std::string_view> keys(std::begin(kReferenceKeys), std::end(kReferenceKeys));
+    keys.insert(keys.end(), {"file", "channels"});
+    json.require_keys(keys);
     if (json.has("file")) {
         matrix.reference_source = std::make_shared<ImageSource>(read_reference_source(json));
     } else {
+        if (json.has("channels"))
+            json.at("channels").fail("\"channels\" of a render", "them beside \"file\"");
         matrix.reference = read_reference(json);
     }
 }

@@ -310,8 +310,8 @@ Grid<float> ssim_values(const Image& test, const Image& reference) {
         return is_finite(linear) ? quantised(display_value(linear)) : none;
     };
     const std::vector<cv::Mat> maps =
-        structural_similarity({channel_values(map_pixels(test, to_8bit)),
-                               channel_values(map_pixels(reference, to_8bit))})
+        structural_similarity({channel_values(map_pixels(test, to_8bit)).reshape(3),
+                               channel_values(map_pixels(reference, to_8bit)).reshape(3)})
             .maps;
     Grid<float> values(test.size(), std::numeric_limits<float>::quiet_NaN());
     if (maps.empty()) return values;

@@ -33,7 +33,7 @@ json method_schema() {
 json selection_schema() {
     json schema{{"type", "object"}, {"additionalProperties", false}};
     for (const std::string_view name : cell_keys()) {
-        if (name == "scheme") continue;
+        if (name == "scheme" || name == "image") continue;  // "method" names these
         const std::string key(name);
         schema["properties"][key] = {{"$ref", "#/properties/axes/properties/" + key}};
     }

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/accumulate.h"
 #include "core/channel_file.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "core/accumulate.h"
 #include "eval/metrics_json.h"
 #include "eval/render_metadata.h"
 

@@ -281,7 +281,8 @@ TEST_CASE("a comparison's JSON has regions only if they were given", "[metrics][
         for (const MetricInfo& metric : all_metrics()) {
             CAPTURE(metric.name);
             const bool is_measured = info.region != Region::edge;
-            const bool is_of_whole = metric.name == "ms_ssim" || metric.name == "worst_tile_psnr_db";
+            const bool is_of_whole =
+                metric.name == "ms_ssim" || metric.name == "worst_tile_psnr_db";
             REQUIRE(region.contains(metric.name) == (is_measured || !metric.is_on_request));
             if (is_of_whole || !region.contains(metric.name)) continue;
             CHECK(region[std::string(metric.name)].is_null() == !is_measured);
