@@ -85,4 +85,10 @@ nlohmann::json frame_json(const std::string& scene, const RenderSettings& settin
     return json;
 }
 
+nlohmann::json reference_json(const Matrix& matrix, const Cell& cell) {
+    if (matrix.reference_source != nullptr)
+        return {{"scene", cell.scene}, {"source", matrix.reference_source->json}};
+    return frame_json(cell.scene, reference_settings(matrix, cell));
+}
+
 }  // namespace vecino

@@ -32,4 +32,7 @@ Planes planes_read_by(const Cell& cell);
 /// Everything that decides a frame but its planes: for results, and to tell frames apart.
 nlohmann::json frame_json(const std::string& scene, const RenderSettings& settings);
 
+/// What a cell is held against, wherever the matrix stands.
+nlohmann::json reference_json(const Matrix& matrix, const Cell& cell);
+
 }  // namespace vecino

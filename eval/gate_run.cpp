@@ -80,7 +80,7 @@ class Reader {
 
     /// Why a row does not answer what the run last asked for; empty if it does.
     std::string staleness(const Cell& cell, const Json& row) const {
-        const Json reference = frame_json(cell.scene, reference_settings(matrix_, cell));
+        const Json reference = reference_json(matrix_, cell);
         if (comparable(row.value("params", Json::object())) != comparable(cell.parameters_json()))
             return "other parameters";
         if (without(row.value("reference", Json::object()), {"scene"}) !=

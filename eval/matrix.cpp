@@ -296,9 +296,9 @@ std::vector<Cell> expand(const Matrix& matrix) {
     return Expansion(matrix).run();
 }
 
-bool needs_scene(const Matrix& matrix, const Cell& cell) {
-    if (cell.kind != CellKind::image || matrix.reference_source == nullptr) return true;
-    return cell.image->reads_frame() || cell.image->reads("scene_file");
+bool traces_scene(const Matrix& matrix, const Cell& cell) {
+    return cell.kind != CellKind::image || matrix.reference_source == nullptr ||
+           cell.image->reads_frame();
 }
 
 std::string folder_of(const Matrix& matrix) {

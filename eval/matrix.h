@@ -72,8 +72,9 @@ Matrix matrix_of(nlohmann::json document, const std::string& file);
 /// All cells, path tracing and ceilings included, in a fixed order with unique names.
 std::vector<Cell> expand(const Matrix& matrix);
 
-/// Whether the cell needs its scene: all but images from elsewhere that are held against a file.
-bool needs_scene(const Matrix& matrix, const Cell& cell);
+/// Whether vecino traces the cell's scene: not for images from elsewhere that are held against a
+/// file, whose scene is a name, or some other program's.
+bool traces_scene(const Matrix& matrix, const Cell& cell);
 
 /// The folder that paths in a matrix start from; empty for this one.
 std::string folder_of(const Matrix& matrix);

@@ -101,6 +101,7 @@ std::string key_numbers(const ReportData& data, const GroupSummary& group) {
         html +=
             " <span>relmse " + number_text(group.relmse->mean, data.relmse_decimals) + "</span>";
     }
+    if (!(group.time_s > 0)) return html;  // not known
     html += " <span>" + number_text(group.time_s, data.time_decimals) + " s";
     if (group.time_share > 0) html += " (" + number_text(100 * group.time_share, 1) + " % of path)";
     return html + "</span>";

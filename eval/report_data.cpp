@@ -105,8 +105,8 @@ std::vector<std::string> varying_parameters(const std::vector<GroupSummary>& gro
         for (const auto& [key, value] : group.params.items()) values[key].insert(value);
     }
     std::vector<std::string> names{"reduction", "window"};
-    const std::set<std::string> apart{"scene",     "method", "seed",
-                                      "reduction", "window", "spp_asked"};
+    const std::set<std::string> apart{"scene",  "method",    "image",    "seed",
+                                      "window", "reduction", "spp_asked"};
     for (const auto& [key, different] : values) {
         if (different.size() > 1 && !apart.contains(key)) names.push_back(key);
     }
@@ -229,6 +229,7 @@ std::string parameters_text(const ReportData& data, const GroupSummary& group) {
 std::string reference_text(const Json& row) {
     const Json settings = row.value("reference", Json::object());
     std::string text;
+    if (settings.contains("source")) return "file " + settings["source"].value("file", "");
     for (const char* name : {"spp", "light_sampling", "sampler", "seed"}) {
         if (!settings.contains(name)) continue;
         text +=

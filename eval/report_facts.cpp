@@ -57,8 +57,9 @@ std::string work(const ReportData& data) {
 std::string seeds(const ReportData& data) {
     std::map<std::vector<std::uint32_t>, std::set<int, std::greater<>>> by_seeds;
     for (const GroupSummary& group : data.groups) {
-        if (!group.params.contains("spp_asked")) continue;
-        by_seeds[group.seeds_done].insert(group.params["spp_asked"].get<int>());
+        if (group.method == "blocky_ceiling") continue;
+        auto& counts = by_seeds[group.seeds_done];
+        if (group.params.contains("spp_asked")) counts.insert(group.params["spp_asked"].get<int>());
     }
     std::string text;
     for (const auto& [list, counts] : by_seeds) {
@@ -68,7 +69,7 @@ std::string seeds(const ReportData& data) {
         std::string spp;
         for (const int count : counts) spp += (spp.empty() ? "" : ", ") + std::to_string(count);
         text += (text.empty() ? "" : "; ") + (numbers.empty() ? "none" : numbers);
-        if (by_seeds.size() > 1) text += " at " + spp + " spp";
+        if (by_seeds.size() > 1 && !spp.empty()) text += " at " + spp + " spp";
     }
     return text;
 }
@@ -96,7 +97,7 @@ std::string cells(const ReportData& data) {
 
 /// Parameters with one value in the whole matrix.
 std::string fixed_parameters(const ReportData& data) {
-    const std::set<std::string> apart{"scene", "method", "seed", "spp_asked"};
+    const std::set<std::string> apart{"scene", "method", "image", "seed", "spp_asked"};
     std::string text;
     for (const auto& [key, value] : data.groups.front().params.items()) {
         const bool varies = std::ranges::find(data.varying, key) != data.varying.end();
@@ -132,16 +133,19 @@ std::size_t failed_rows(const ReportData& data) {
 std::vector<Fact> run_facts(const ReportData& data) {
     const Json versions = data.run.value("versions", Json::object());
     const std::string simd = text_of(versions.value("simd_width", Json("unknown")));
-    return {{"Finished", when(data)},
-            {"Program", program(data)},
-            {"Libraries", libraries(data)},
-            {"Processor", values_of(data, "host")},
-            {"Threads", values_of(data, "threads") + "; " + simd + " samples side by side"},
-            {"Cells", cells(data)},
-            {"Work", work(data)},
-            {"Seeds", seeds(data)},
-            {"In all cells", fixed_parameters(data)},
-            {"Reference", references(data)}};
+    std::vector<Fact> facts = {
+        {"Finished", when(data)},
+        {"Program", program(data)},
+        {"Libraries", libraries(data)},
+        {"Processor", values_of(data, "host")},
+        {"Threads", values_of(data, "threads") + "; " + simd + " samples side by side"},
+        {"Cells", cells(data)},
+        {"Work", work(data)},
+        {"Seeds", seeds(data)},
+        {"In all cells", fixed_parameters(data)},
+        {"Reference", references(data)}};
+    std::erase_if(facts, [](const Fact& fact) { return fact.value.empty(); });
+    return facts;
 }
 
 }  // namespace vecino

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Puts the parts of the report together, with the data that its charts are drawn from.
+#include <algorithm>
+
 #include "eval/error_map.h"
 #include "eval/html_text.h"
 #include "eval/report_assets.h"
@@ -87,7 +89,6 @@ Json data_json(const ReportData& data, const ReportPictures& pictures) {
             {"metrics", metric_list_json(data)},
             {"graphs", graphs_json(data)},
             {"convergence", convergence_json(data.convergence)},
-            {"relmse_decimals", data.relmse_decimals},
             {"time_decimals", data.time_decimals}};
 }
 
@@ -149,18 +150,29 @@ std::string contents_html(const ReportData& data) {
     return html;
 }
 
+/// References from files may have no planes to tell regions by.
+bool has_regions(const ReportData& data) {
+    return std::ranges::any_of(data.groups, [](const GroupSummary& group) {
+        return std::ranges::any_of(group.region_psnr_float_db,
+                                   [](const auto& value) { return value.has_value(); });
+    });
+}
+
 std::string chart_switches_html(const ReportData& data) {
     const auto button = [](const std::string& attribute, const std::string& text, bool pressed) {
         return "<button type=\"button\" " + attribute + " aria-pressed=\"" +
                (pressed ? "true" : "false") + "\">" + escaped(text) + "</button>";
     };
-    std::string html =
-        "<div class=\"switch\" role=\"group\" aria-label=\"Region beside the whole image\">";
-    for (const RegionInfo& info : kRegions) {
-        const std::string name(info.name);
-        html += button("data-region=\"" + name + "\"", name, info.region == Region::interior);
+    std::string html;
+    if (has_regions(data)) {
+        html +=
+            "<div class=\"switch\" role=\"group\" aria-label=\"Region beside the whole image\">";
+        for (const RegionInfo& info : kRegions) {
+            const std::string name(info.name);
+            html += button("data-region=\"" + name + "\"", name, info.region == Region::interior);
+        }
+        html += "</div>\n";
     }
-    html += "</div>\n";
     if (!data.reproduction) return html;
     html += "<div class=\"switch\" role=\"group\" aria-label=\"Variant\">";
     const auto& variants = data.reproduction->specification.variants;
@@ -175,6 +187,7 @@ std::string charts_html(const ReportData& data) {
         const std::string name = escaped(scene);
         for (const char* part : {"whole", "region"}) {
             const bool is_whole = std::string_view(part) == "whole";
+            if (!is_whole && !has_regions(data)) continue;
             html += "<figure><figcaption>" + name + ", ";
             html += is_whole ? "whole image" : "<span class=\"region-name\">interior</span>";
             html += "</figcaption><div class=\"plot\"><canvas role=\"img\" data-scene=\"" + name;

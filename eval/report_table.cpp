@@ -202,6 +202,13 @@ std::string row_head(const ReportData& data, const GroupSummary& group, std::siz
            "</a></th>";
 }
 
+/// Nothing in any row: what images from elsewhere do not have.
+bool is_blank(const ReportData& data, const Column& column) {
+    return std::ranges::all_of(data.groups, [&](const GroupSummary& group) {
+        return column.value(group).text == Value{}.text;
+    });
+}
+
 using BestTexts = std::map<std::string, std::vector<std::string>>;
 
 BestTexts best_texts(const ReportData& data, const std::vector<Column>& columns) {
@@ -231,6 +238,7 @@ std::string psnr_float_interval(const GroupSummary& group) {
 std::string table_html(const ReportData& data) {
     std::vector<Column> columns = parameter_columns(data);
     for (Column& column : result_columns(data)) columns.push_back(std::move(column));
+    std::erase_if(columns, [&](const Column& column) { return is_blank(data, column); });
     const BestTexts best = best_texts(data, columns);
 
     std::string html = "<table id=\"results-table\"><thead><tr>" +

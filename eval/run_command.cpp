@@ -76,18 +76,20 @@ void print_counts(const RunSummary& summary) {
 }
 
 /// What can be known to be wrong before the directory is made.
-void check_inputs(const std::vector<Cell>& cells, const RunOptions& options) {
+void check_inputs(const Matrix& matrix, const RunOptions& options) {
+    const std::vector<Cell> cells = expand(matrix);
     (void)plan_run(cells, options, [](const Cell&) { return CellState::missing; });
     std::set<std::string> scenes;
     for (const Cell& cell : cells) {
-        if (scenes.insert(cell.scene).second) (void)load_scene(cell.scene);
+        if (traces_scene(matrix, cell) && scenes.insert(cell.scene).second)
+            (void)load_scene(cell.scene);
     }
 }
 
 ExitCode run_run(const RunArguments& arguments) {
     const RunOptions options{arguments.only, parse_rerun(arguments.rerun), arguments.simd_width};
     const Matrix matrix = load_matrix(arguments.config);
-    check_inputs(expand(matrix), options);
+    check_inputs(matrix, options);
     if (arguments.dry_run) return print_estimate(matrix, arguments, options);
     catch_interrupts();
     const RunSummary summary = run_matrix(matrix, arguments.directory, options);

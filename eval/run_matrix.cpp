@@ -134,23 +134,27 @@ class Runner {
     }
 
     void load_scene_of(const Cell& cell) {
-        if (!needs_scene(matrix_, cell)) {
+        if (traces_scene(matrix_, cell)) {
+            if (scenes_.contains(cell.scene)) return;
+            scenes_.emplace(cell.scene, load_scene(cell.scene));
+        } else if (!cell.image->reads("scene_file")) {
             scene_hashes_.try_emplace(cell.scene);  // a name alone
             return;
         }
-        if (scenes_.contains(cell.scene)) return;
-        if (cell.kind != CellKind::image || cell.image->reads_frame() ||
-            matrix_.reference_source == nullptr)
-            scenes_.emplace(cell.scene, load_scene(cell.scene));
         scene_hashes_[cell.scene] = text_hash(read_file(cell.scene));
     }
 
-    /// Tells states of the file that holds the cell's image; empty where no file does.
-    std::string image_hash(const Cell& cell) const {
-        if (cell.kind != CellKind::image || cell.image->file.empty()) return "";
-        const std::string path =
-            sourced_path(matrix_, cell.image->file, placeholders_of(cell.scene, cell.settings));
-        return std::filesystem::exists(path) ? text_hash(read_file(path)) : "no file";
+    /// Tells states of the files that hold the cell's image and its reference; empty where none do.
+    std::string files_hash(const Cell& cell) const {
+        const auto hash = [](const std::string& path) {
+            return std::filesystem::exists(path) ? text_hash(read_file(path)) : "no file";
+        };
+        std::string text;
+        if (cell.kind == CellKind::image && !cell.image->file.empty())
+            text += hash(sourced_path(matrix_, cell.image->file,
+                                      placeholders_of(cell.scene, cell.settings)));
+        if (matrix_.reference_source != nullptr) text += hash(reference_path(cell));
+        return text;
     }
 
     std::string reference_path(const Cell& cell) const {
@@ -164,7 +168,7 @@ class Runner {
         const nlohmann::json& row = old->second;
         const bool same_question =
             row.value("params", nlohmann::json()) == cell.parameters_json() &&
-            row.value("reference", nlohmann::json()) == reference_json(cell);
+            row.value("reference", nlohmann::json()) == reference_json(matrix_, cell);
         if (!same_question) return CellState::missing;
         if (row.value("status", nlohmann::json()) != "ok") return CellState::failed;
         if (!std::filesystem::exists(directory_.file("cells/" + cell.name + "/image.exr")))
@@ -175,7 +179,7 @@ class Runner {
             row.value("build", nlohmann::json()) == build_ &&
             row.value("simd_width", nlohmann::json()) == simd_width_ &&
             row.value("scene_hash", nlohmann::json()) == scene_hashes_.at(cell.scene) &&
-            row.value("image_hash", "") == image_hash(cell);
+            row.value("files_hash", "") == files_hash(cell);
         return same_program ? CellState::finished : CellState::stale;
     }
 
@@ -258,15 +262,6 @@ class Runner {
         return result;
     }
 
-    nlohmann::json reference_json(const Cell& cell) const {
-        if (matrix_.reference_source != nullptr)
-            return {
-                {"file", reference_path(cell)},
-                {"channels", matrix_.reference_source->json.value("channels", nlohmann::json())}};
-        const RenderSettings s = reference_settings(matrix_, cell);
-        return frame_json(cell.scene, s);
-    }
-
     const StoredReference& reference_of(const Cell& cell) {
         if (matrix_.reference_source != nullptr) return reference_from_file(cell);
         RenderSettings settings = reference_settings(matrix_, cell);
@@ -284,7 +279,7 @@ class Runner {
 
     const StoredReference& reference_from_file(const Cell& cell) {
         const std::string path = reference_path(cell);
-        const std::string key = reference_json(cell).dump() + text_hash(read_file(path));
+        const std::string key = reference_json(matrix_, cell).dump() + text_hash(read_file(path));
         return references_.get(key, stem(cell.scene), [&] {
             return ReferenceHalves{
                 load_sourced_image(*matrix_.reference_source, path).frame, {}, {}, {}, 0};
@@ -329,11 +324,11 @@ class Runner {
                            {"seed", cell.settings.seed},
                            {"params", cell.parameters_json()},
                            {"samples_ratio", cell.samples_ratio()},
-                           {"reference", reference_json(cell)},
+                           {"reference", reference_json(matrix_, cell)},
                            {"reference_file", input.reference->file},
                            {"reference_error", input.reference->error},
                            {"scene_hash", scene_hashes_.at(cell.scene)},
-                           {"image_hash", image_hash(cell)},
+                           {"files_hash", files_hash(cell)},
                            {"build", build_},
                            {"simd_width", simd_width_},
                            {"host", run_["versions"]["cpu"]}};

@@ -2,11 +2,8 @@
 //
 // The program as a script sees it: exit codes, what stands on stdout. Its errors:
 // test_bad_input.cpp.
-#include <sys/wait.h>
-
 #include <OpenImageIO/imageio.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -17,26 +14,13 @@
 #include "core/image_io.h"
 #include "core/planes.h"
 #include "tests/catch.h"
+#include "tests/program.h"
 #include "tests/region_frames.h"
 #include "tests/temp_dir.h"
 
 using namespace vecino;
 
 namespace {
-
-struct Outcome {
-    int code = -1;
-    std::string out, err;
-};
-
-Outcome run(const TempDir& dir, const std::string& arguments) {
-    const std::string out = dir.path("stdout.txt");
-    const std::string err = dir.path("stderr.txt");
-    const std::string command = "cd '" + dir.path(".") + "' && exec '" VECINO_PROGRAM "' " +
-                                arguments + " >'" + out + "' 2>'" + err + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
-}
 
 const std::string kScene = "'" VECINO_SOURCE_DIR "/scenes/cornell_sphere.json'";
 const std::string kRender = "render " + kScene + " ";
@@ -57,7 +41,8 @@ Image noise(Extent size, float scale) {
 
 TEST_CASE("render, upsample and compare make a pipeline of files", "[cli]") {
     const TempDir dir;
-    const Outcome low = run(dir, kRender + "-o low.exr --size 48x32 --reduction 2 --spp 8 --json");
+    const Outcome low =
+        run_in(dir, kRender + "-o low.exr --size 48x32 --reduction 2 --spp 8 --json");
     REQUIRE(low.code == 0);
     const auto json = nlohmann::json::parse(low.out);
     CHECK(json["samples"] == 24 * 16 * 8);
@@ -66,17 +51,17 @@ TEST_CASE("render, upsample and compare make a pipeline of files", "[cli]") {
     const Frame frame = load_frame(dir.path("low.exr"));
     CHECK(frame.size() == Extent{24, 16});
     CHECK(planes_of(frame) == Planes::all());
-    REQUIRE(run(dir, kRender + "-o ref.exr --size 48x32 --spp 64").code == 0);
+    REQUIRE(run_in(dir, kRender + "-o ref.exr --size 48x32 --spp 64").code == 0);
     for (const char* scheme :
          {"nearest", "mean", "distance2d", "distance3d", "distance3d_normal"}) {
         CAPTURE(scheme);
-        const Outcome up =
-            run(dir,
-                std::string("upsample low.exr -o up.exr --size 48x32 --window 5 --json --scheme ") +
-                    scheme);
+        const Outcome up = run_in(
+            dir,
+            std::string("upsample low.exr -o up.exr --size 48x32 --window 5 --json --scheme ") +
+                scheme);
         REQUIRE(up.code == 0);
         CHECK(nlohmann::json::parse(up.out).contains("fallback_pixels"));
-        const Outcome compared = run(dir, "compare up.exr ref.exr --json --error-map map.png");
+        const Outcome compared = run_in(dir, "compare up.exr ref.exr --json --error-map map.png");
         REQUIRE(compared.code == 0);
         const auto metrics = nlohmann::json::parse(compared.out);
         CHECK(metrics["psnr_float_db"].get<double>() > 8.0);
@@ -89,15 +74,15 @@ TEST_CASE("limits decide between 0 and 2, and say which one failed", "[cli]") {
     const TempDir dir;
     save_image(noise({32, 32}, 1.0f), dir.path("a.exr"));
     save_image(noise({32, 32}, 0.9f), dir.path("b.exr"));
-    CHECK(run(dir, "compare a.exr b.exr --min-psnr 10 --min-ssim 0.5 --max-relmse 1").code == 0);
-    const Outcome worse = run(dir, "compare a.exr b.exr --min-psnr 60");
+    CHECK(run_in(dir, "compare a.exr b.exr --min-psnr 10 --min-ssim 0.5 --max-relmse 1").code == 0);
+    const Outcome worse = run_in(dir, "compare a.exr b.exr --min-psnr 60");
     CHECK(worse.code == 2);
     CHECK(worse.err.find("failed: psnr_db is") == 0);
-    CHECK(run(dir, "compare a.exr b.exr --min-ssim 0.9999").code == 2);
-    CHECK(run(dir, "compare a.exr b.exr --max-relmse 1e-9").code == 2);
-    CHECK(run(dir, "compare a.exr a.exr --min-psnr 200").code == 0);  // identical passes any
+    CHECK(run_in(dir, "compare a.exr b.exr --min-ssim 0.9999").code == 2);
+    CHECK(run_in(dir, "compare a.exr b.exr --max-relmse 1e-9").code == 2);
+    CHECK(run_in(dir, "compare a.exr a.exr --min-psnr 200").code == 0);  // identical passes any
     save_image(noise({8, 8}, 1.0f), dir.path("small.exr"));
-    const Outcome small = run(dir, "compare small.exr small.exr --min-ssim 0.1");
+    const Outcome small = run_in(dir, "compare small.exr small.exr --min-ssim 0.1");
     CHECK(small.code == 2);  // no ssim below 11 pixels: a missing value cannot pass
 }
 
@@ -109,18 +94,20 @@ TEST_CASE("a non-finite pixel is reported and never scored", "[cli]") {
     image(9, 5).x = std::numeric_limits<float>::infinity();
     save_image(image, dir.path("bad.exr"));
     const Outcome compared =
-        run(dir, "compare bad.exr good.exr --json --error-map map.png --min-psnr 0");
+        run_in(dir, "compare bad.exr good.exr --json --error-map map.png --min-psnr 0");
     CHECK(compared.code == 5);
     const auto json = nlohmann::json::parse(compared.out);
     CHECK(json["psnr_db"].is_null());
     CHECK(json["non_finite"]["count"] == 2);
     CHECK(json["non_finite"]["first"] == nlohmann::json({3, 2, 1}));
     CHECK(std::filesystem::exists(dir.path("map.png")));
-    const Outcome up = run(dir, "upsample bad.exr -o up.exr --size 32x32 --scheme nearest --json");
+    const Outcome up =
+        run_in(dir, "upsample bad.exr -o up.exr --size 32x32 --scheme nearest --json");
     CHECK(up.code == 5);
     CHECK(nlohmann::json::parse(up.out)["non_finite_pixels"] == 2);
     CHECK(load_image(dir.path("up.exr"))(6, 4) == glm::vec3(0.0f));
-    const Outcome mean = run(dir, "upsample bad.exr -o up.exr --size 32x32 --scheme mean --json");
+    const Outcome mean =
+        run_in(dir, "upsample bad.exr -o up.exr --size 32x32 --scheme mean --json");
     CHECK(mean.code == 0);
     CHECK(nlohmann::json::parse(mean.out)["dropped_samples"] == 2);
     CHECK(mean.err.find("warning: bad.exr: 2 low-res pixels are not finite") == 0);
@@ -134,20 +121,21 @@ TEST_CASE("a reference with first hits gives metrics per region", "[cli]") {
     save_frame(frame, dir.path("planes.exr"));
     save_image(frame.radiance, dir.path("plain.exr"));
     save_image(noise({32, 32}, 0.9f), dir.path("test.png"));
-    const Outcome text = run(dir, "compare test.png planes.exr");
+    const Outcome text = run_in(dir, "compare test.png planes.exr");
     CHECK(text.out.find("region              emitter         edge     interior\n") !=
           std::string::npos);
     CHECK(text.out.find("pixels                    0           25          999\n") !=
           std::string::npos);
-    const auto json = nlohmann::json::parse(run(dir, "compare test.png planes.exr --json").out);
+    const auto json = nlohmann::json::parse(run_in(dir, "compare test.png planes.exr --json").out);
     CHECK(json["regions"]["edge"]["pixels"] == 25);
     CHECK(json["regions"]["edge"]["ssim"].is_number());
     CHECK(json["regions"]["emitter"]["ssim"].is_null());
-    auto plain = nlohmann::json::parse(run(dir, "compare planes.exr plain.exr --json").out);
+    auto plain = nlohmann::json::parse(run_in(dir, "compare planes.exr plain.exr --json").out);
     CHECK_FALSE(plain.contains("regions"));
     CHECK(plain["identical_8bit"] == true);
-    CHECK(run(dir, "compare test.png plain.exr").out.find("region") == std::string::npos);
-    CHECK(run(dir, "compare --help").out.find("emitter: within width/32 px") != std::string::npos);
+    CHECK(run_in(dir, "compare test.png plain.exr").out.find("region") == std::string::npos);
+    CHECK(run_in(dir, "compare --help").out.find("emitter: within width/32 px") !=
+          std::string::npos);
 }
 
 TEST_CASE("planes that cannot be read cost a comparison its regions only", "[cli]") {
@@ -161,7 +149,7 @@ TEST_CASE("planes that cannot be read cost a comparison its regions only", "[cli
     REQUIRE(output->open(dir.path("part.exr"), spec));
     REQUIRE(output->write_image(spec.format, std::vector<float>(12 * 12 * 4, 0.5f).data()));
     REQUIRE(output->close());
-    const Outcome outcome = run(dir, "compare part.exr part.exr --json");
+    const Outcome outcome = run_in(dir, "compare part.exr part.exr --json");
     CHECK(outcome.code == 0);
     CHECK(nlohmann::json::parse(outcome.out)["mae"] == 0.0);
     CHECK(outcome.err.find("warning: no regions: part.exr: ") == 0);
@@ -169,22 +157,24 @@ TEST_CASE("planes that cannot be read cost a comparison its regions only", "[cli
 
 TEST_CASE("the lists name what the tables hold", "[cli]") {
     const TempDir dir;
-    const auto schemes = nlohmann::json::parse(run(dir, "list schemes --json").out);
+    const auto schemes = nlohmann::json::parse(run_in(dir, "list schemes --json").out);
     CHECK(schemes.size() == 5);
     CHECK(schemes[0]["name"] == "nearest");
-    CHECK(nlohmann::json::parse(run(dir, "list metrics --json").out)[0]["name"] == "psnr_float_db");
-    CHECK(run(dir, "list methods").out.find("path ") == 0);
-    const Outcome cells = run(dir, "list cells '" VECINO_SOURCE_DIR "/configs/thesis-quick.json'");
+    CHECK(nlohmann::json::parse(run_in(dir, "list metrics --json").out)[0]["name"] ==
+          "psnr_float_db");
+    CHECK(run_in(dir, "list methods").out.find("path ") == 0);
+    const Outcome cells =
+        run_in(dir, "list cells '" VECINO_SOURCE_DIR "/configs/thesis-quick.json'");
     CHECK(cells.out.find("cornell_sphere.distance3d_normal.f2.w7.s1\n") != std::string::npos);
 }
 
 TEST_CASE("version and help answer with 0", "[cli]") {
     const TempDir dir;
-    const Outcome version = run(dir, "--version");
+    const Outcome version = run_in(dir, "--version");
     CHECK(version.code == 0);
     CHECK(version.out.find("vecino 0.") == 0);
     CHECK(version.out.find("Embree ") != std::string::npos);
-    CHECK(run(dir, "render --help").out.find("--light-sampling") != std::string::npos);
+    CHECK(run_in(dir, "render --help").out.find("--light-sampling") != std::string::npos);
 }
 
 TEST_CASE("a run that is killed or interrupted goes on and ends as if it had not been",
@@ -194,11 +184,11 @@ TEST_CASE("a run that is killed or interrupted goes on and ends as if it had not
               R"({"name": "m", "axes": {"scene": [")" VECINO_SOURCE_DIR R"(/scenes/cornell.json"],
         "scheme": ["nearest", "mean"], "reduction": [2, 3], "window": [3], "seed": [1, 2, 3, 4, 5, 6]},
         "fixed": {"size": [48, 48], "spp": 400}, "reference": {"spp": 256}})");
-    REQUIRE(run(dir, "run m.json -o whole").code == 0);
-    const Outcome stopped = run(dir, "run m.json -o cut & sleep 0.6; kill -INT $!; wait $!");
+    REQUIRE(run_in(dir, "run m.json -o whole").code == 0);
+    const Outcome stopped = run_in(dir, "run m.json -o cut & sleep 0.6; kill -INT $!; wait $!");
     CHECK((stopped.code == 130 || stopped.code == 0));
-    run(dir, "run m.json -o cut & sleep 0.4; kill -KILL $!; wait $!");
-    REQUIRE(run(dir, "run m.json -o cut").code == 0);
+    run_in(dir, "run m.json -o cut & sleep 0.4; kill -KILL $!; wait $!");
+    REQUIRE(run_in(dir, "run m.json -o cut").code == 0);
     const auto lasting = [&](const std::string& name) {
         std::map<std::string, nlohmann::json> rows;
         std::istringstream lines(read_file(dir.path(name + "/results.jsonl")));
@@ -211,13 +201,13 @@ TEST_CASE("a run that is killed or interrupted goes on and ends as if it had not
     };
     CHECK(lasting("cut").size() == 6 * 5 + 2);  // and a ceiling for each reduction
     CHECK(lasting("cut") == lasting("whole"));
-    CHECK(run(dir, "run m.json -o cut --dry-run").out.find("0 cells to do") == 0);
+    CHECK(run_in(dir, "run m.json -o cut --dry-run").out.find("0 cells to do") == 0);
 }
 
 TEST_CASE("the number of threads does not change a file's pixels", "[cli]") {
     const TempDir dir;
-    REQUIRE(run(dir, kRender + "-o one.exr --size 24x24 --spp 8 --threads 1").code == 0);
-    REQUIRE(run(dir, kRender + "-o seven.exr --size 24x24 --spp 8 --threads 7").code == 0);
+    REQUIRE(run_in(dir, kRender + "-o one.exr --size 24x24 --spp 8 --threads 1").code == 0);
+    REQUIRE(run_in(dir, kRender + "-o seven.exr --size 24x24 --spp 8 --threads 7").code == 0);
     CHECK(load_frame(dir.path("one.exr")).radiance == load_frame(dir.path("seven.exr")).radiance);
     CHECK(load_frame(dir.path("one.exr")).variance == load_frame(dir.path("seven.exr")).variance);
 }

@@ -8,6 +8,7 @@
 
 #include "eval/summary.h"
 #include "tests/catch.h"
+#include "tests/program.h"
 #include "tests/tiny_run.h"
 
 using namespace vecino;
@@ -94,6 +95,39 @@ TEST_CASE("a matrix of files needs no scene of vecino's", "[image_source]") {
     const RunSummary changed = matrix.run({.only = "", .rerun = Rerun::stale});
     CHECK(changed.done == 1);
     CHECK(matrix.rows().at("attic.first.s1")["metrics"]["mae"].get<double>() == Approx(0.375));
+
+    save_image(plain(0.25f), matrix.temp.path("attic.exr"));
+    CHECK(matrix.run({.only = "", .rerun = Rerun::stale}).done == 3);
+    CHECK(matrix.rows().at("attic.first.s1")["metrics"]["mae"].get<double>() == Approx(0.125));
+}
+
+TEST_CASE("files are run, accepted, checked and reported on from the command line",
+          "[image_source]") {
+    const FileMatrix matrix;
+    (void)matrix.load();
+    const auto code_of = [&](const std::string& line) { return run_in(matrix.temp, line).code; };
+    CHECK(code_of("run files.json -o run") == 0);
+    CHECK(code_of("accept run --baseline baseline.json --yes") == 0);
+    CHECK(code_of("check run --baseline baseline.json") == 0);
+    CHECK(code_of("report run") == 0);
+    CHECK_THAT(read_file(matrix.directory + "/report.html"),
+               Catch::Matchers::Contains("file {scene}.exr"));
+    save_image(plain(0.0f), matrix.temp.path("attic_second.png"));
+    CHECK(code_of("run files.json -o run --rerun stale") == 0);
+    CHECK(code_of("check run --baseline baseline.json") == 2);
+}
+
+TEST_CASE("a scene of another program goes to its command as it is", "[image_source]") {
+    FileMatrix matrix;
+    matrix.temp.write("attic.xml", "<scene/>");
+    matrix.json["axes"] = {{"scene", "attic.xml"}, {"image", "theirs"}};
+    matrix.json["images"] = {{"theirs",
+                              {{"command",
+                                {"sh", "-c", "grep -q '<scene/>' \"$0\" && cp attic.exr \"$1\"",
+                                 "{scene_file}", "{output}"}}}}};
+    (void)matrix.load();
+    CHECK(run_in(matrix.temp, "run files.json -o run").code == 0);
+    CHECK(matrix.rows().at("attic.theirs.s1")["metrics"]["psnr_float_db"].is_null());
 }
 
 TEST_CASE("colours come from the channels that are named", "[image_source]") {

@@ -11,9 +11,9 @@ const matrix = (() => {
     const metrics = [
         db("psnr_float_db", (g) => g.psnr_float_db),
         ...["interior", "edge", "emitter"].map((region) => db(`psnr_float_db, ${region}`, (g) => g.regions[region])),
-        db("noise", (g) => g.noise_db), db("bias", (g) => g.bias_db), db("psnr_db", (g) => g.psnr_db),
-        { name: "ssim", unit: "", digits: 4, isHigher: true, of: (g) => g.ssim },
-        { name: "relmse", unit: "", digits: report.relmse_decimals, isLog: true, of: (g) => g.relmse },
+        db("noise", (g) => g.noise_db), db("bias", (g) => g.bias_db),
+        ...report.metrics.filter((m) => m.name !== "psnr_float_db").map((m) => (
+            { name: m.name, unit: m.unit, digits: m.decimals, isHigher: m.higher_is_better, isLog: !m.higher_is_better, of: (g) => g.metrics[m.name] })),
         { name: "time", unit: "s", digits: report.time_decimals, isLog: true, of: (g) => positive(g.time_s) },
         { name: "time share", unit: "% of path", digits: 1, isLog: true, of: (g) => positive(100 * g.time_share) },
     ];
