@@ -18,13 +18,18 @@ struct Outcome {
     std::string out, err;
 };
 
-inline Outcome run_in(const TempDir& dir, const std::string& arguments) {
+/// A line for the shell.
+inline Outcome run_line(const TempDir& dir, const std::string& line) {
     const std::string out = dir.path("stdout.txt");
     const std::string err = dir.path("stderr.txt");
-    const std::string command = "cd '" + dir.path(".") + "' && exec '" VECINO_PROGRAM "' " +
-                                arguments + " >'" + out + "' 2>'" + err + "'";
+    const std::string command =
+        "cd '" + dir.path(".") + "' && " + line + " >'" + out + "' 2>'" + err + "' </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+}
+
+inline Outcome run_in(const TempDir& dir, const std::string& arguments) {
+    return run_line(dir, "exec '" VECINO_PROGRAM "' " + arguments);
 }
 
 }  // namespace vecino

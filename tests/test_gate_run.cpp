@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Runs on disk against baselines, and the gate that guards this repository: the committed baseline
-// of configs/thesis-gate.json, held by this build and broken by one with a wrong weight.
-#include <sys/wait.h>
-
-#include <cstdlib>
+// Runs on disk against baselines, and the gate that guards this repository: the committed baselines
+// of configs/thesis-quick.json and thesis-gate.json, held by this build and broken by one with a
+// wrong weight.
 #include <set>
 
 #include "eval/gate_run.h"
 #include "tests/catch.h"
 #include "tests/error_of.h"
+#include "tests/program.h"
 #include "tests/tiny_run.h"
 
 using namespace vecino;
@@ -17,25 +16,15 @@ using nlohmann::json;
 
 namespace {
 
-struct Outcome {
-    int code = -1;
-    std::string out, err;
-};
-
-Outcome run(const TempDir& dir, const std::string& command) {
-    const std::string out = dir.path("stdout.txt");
-    const std::string err = dir.path("stderr.txt");
-    const std::string line =
-        "cd '" + dir.path(".") + "' && " + command + " >'" + out + "' 2>'" + err + "' </dev/null";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
-}
-
 const std::string kProgram = "'" VECINO_PROGRAM "' ";
 const std::string kDamaged = "'" VECINO_DAMAGED_PROGRAM "' ";
-const std::string kGate = "'" VECINO_SOURCE_DIR "/configs/thesis-gate.json' ";
-const std::string kBaseline =
-    "--baseline '" VECINO_SOURCE_DIR "/configs/baselines/thesis-gate.json' ";
+
+std::string config(const std::string& matrix) {
+    return "'" VECINO_SOURCE_DIR "/configs/" + matrix + ".json' ";
+}
+std::string baseline(const std::string& matrix) {
+    return "--baseline '" VECINO_SOURCE_DIR "/configs/baselines/" + matrix + ".json' ";
+}
 
 /// The only fault of a run after a change to the row of one cell.
 template <class Change>
@@ -103,11 +92,11 @@ TEST_CASE("accept and check as a script sees them", "[gate][cli]") {
     const TempDir& dir = tiny.temp;
     const std::string check = kProgram + "check run --baseline b.json ";
     const std::string accept = "CI= " + kProgram + "accept run --baseline b.json ";
-    CHECK(run(dir, check).code == 2);
-    CHECK(run(dir, "CI=1 " + kProgram + "accept run --baseline b.json").code == 64);
-    CHECK(run(dir, accept).code == 0);
-    CHECK(run(dir, accept).out.find("nothing changed") != std::string::npos);
-    const Outcome passed = run(dir, check + "--junit j.xml --markdown m.md --ctest");
+    CHECK(run_line(dir, check).code == 2);
+    CHECK(run_line(dir, "CI=1 " + kProgram + "accept run --baseline b.json").code == 64);
+    CHECK(run_line(dir, accept).code == 0);
+    CHECK(run_line(dir, accept).out.find("nothing changed") != std::string::npos);
+    const Outcome passed = run_line(dir, check + "--junit j.xml --markdown m.md --ctest");
     CHECK(passed.code == 0);
     CHECK(passed.out.find("<CTestMeasurement type=\"numeric/double\" name=\"box.path ") !=
           std::string::npos);
@@ -118,47 +107,50 @@ TEST_CASE("accept and check as a script sees them", "[gate][cli]") {
     for (auto& [name, row] : rows)
         if (row["group"] == "box.mean.f2.w3") row["metrics"]["psnr_float_db"] = 3.0;
     tiny.write_rows(rows);
-    const Outcome failed = run(dir, check + "--ctest");
+    const Outcome failed = run_line(dir, check + "--ctest");
     CHECK(failed.code == 2);
     CHECK(failed.out.find("FAIL: 1 of ") == 0);
     for (const char* image : {"TestImage", "ValidImage"})
         CHECK(failed.out.find("name=\"" + std::string(image) + "\">" + tiny.directory) !=
               std::string::npos);
     CHECK(failed.err.find("vecino accept run --baseline b.json") != std::string::npos);
-    const json verdicts = json::parse(run(dir, check + "--json").out)["verdicts"];
+    const json verdicts = json::parse(run_line(dir, check + "--json").out)["verdicts"];
     CHECK(verdicts[0]["group"] == "box.mean.f2.w3");
 
     // Nothing is overwritten unless somebody said so.
     const std::string before = dir.read("b.json");
-    CHECK(run(dir, accept).code == 64);
+    CHECK(run_line(dir, accept).code == 64);
     CHECK(dir.read("b.json") == before);
-    CHECK(run(dir, accept + "--yes").code == 0);
+    CHECK(run_line(dir, accept + "--yes").code == 0);
     CHECK(dir.read("b.json") != before);
-    CHECK(run(dir, check).code == 0);
+    CHECK(run_line(dir, check).code == 0);
 
     rows[kCell]["metrics"]["non_finite"]["count"] = 1;
     tiny.write_rows(rows);
-    CHECK(run(dir, check).code == 5);
-    CHECK(run(dir, accept + "--yes").code == 2);
+    CHECK(run_line(dir, check).code == 5);
+    CHECK(run_line(dir, accept + "--yes").code == 2);
     rows.erase(kCell);
     tiny.write_rows(rows);
-    CHECK(run(dir, check).code == 2);
-    CHECK(run(dir, kProgram + "check nowhere --baseline b.json").code == 4);
-    CHECK(run(dir, check + "--json --ctest").code == 64);
+    CHECK(run_line(dir, check).code == 2);
+    CHECK(run_line(dir, kProgram + "check nowhere --baseline b.json").code == 4);
+    CHECK(run_line(dir, check + "--json --ctest").code == 64);
 }
 
-TEST_CASE("the committed baseline of the thesis's schemes holds", "[gate]") {
+TEST_CASE("the committed baselines of the thesis's schemes hold", "[gate]") {
+    const std::string matrix = GENERATE(values<std::string>({"thesis-gate", "thesis-quick"}));
+    CAPTURE(matrix);
     const TempDir dir;
-    REQUIRE(run(dir, kProgram + "run " + kGate + "-o out").code == 0);
-    const Outcome check = run(dir, kProgram + "check out " + kBaseline);
+    REQUIRE(run_line(dir, kProgram + "run " + config(matrix) + "-o out").code == 0);
+    const Outcome check = run_line(dir, kProgram + "check out " + baseline(matrix));
     INFO(check.out);
     CHECK(check.code == 0);
 }
 
 TEST_CASE("one wrong weight of a scheme is caught by the committed baseline", "[gate]") {
     const TempDir dir;
-    REQUIRE(run(dir, kDamaged + "run " + kGate + "-o out").code == 0);
-    const Outcome check = run(dir, kProgram + "check out " + kBaseline + "--json");
+    REQUIRE(run_line(dir, kDamaged + "run " + config("thesis-gate") + "-o out").code == 0);
+    const Outcome check =
+        run_line(dir, kProgram + "check out " + baseline("thesis-gate") + "--json");
     CHECK(check.code == 2);
     std::set<std::string> methods, classes;
     const json verdicts = json::parse(check.out)["verdicts"];
