@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <glm/vec3.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +15,17 @@
 #include "core/image_io.h"
 
 namespace vecino {
+
+/// A channel of a plane's value.
+inline float component(const glm::vec3& value, std::size_t c) {
+    return value[static_cast<int>(c)];
+}
+inline float component(float value, std::size_t) {
+    return value;
+}
+inline float component(std::int32_t value, std::size_t) {
+    return static_cast<float>(value);
+}
 
 /// A channel to write: its name, and its values by the number of the pixel, counted row by row.
 struct ChannelSource {

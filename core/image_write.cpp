@@ -106,17 +106,6 @@ void save_encoded(const Image& image, const std::string& path) {
     });
 }
 
-/// One value of a plane.
-float component(const glm::vec3& value, std::size_t c) {
-    return value[static_cast<int>(c)];
-}
-float component(float value, std::size_t) {
-    return value;
-}
-float component(std::int32_t value, std::size_t) {
-    return static_cast<float>(value);
-}
-
 void save_planes(const Frame& frame, const std::string& path, const Metadata& metadata) {
     const std::vector<const PlaneInfo*> planes = planes_to_write(frame, path);
     ImageSpec spec = make_spec(frame.size(), 0, TypeDesc::FLOAT);

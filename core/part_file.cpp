@@ -34,16 +34,6 @@ std::string names_of(Planes planes) {
 
 // ---------------------------------------------------------------- first hits as channels
 
-float component(const glm::vec3& value, std::size_t c) {
-    return value[static_cast<int>(c)];
-}
-float component(float value, std::size_t) {
-    return value;
-}
-float component(std::int32_t value, std::size_t) {
-    return static_cast<float>(value);
-}
-
 void set_component(glm::vec3& to, std::size_t c, float value) {
     to[static_cast<int>(c)] = value;
 }

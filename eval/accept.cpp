@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <regex>
 
 #include "core/error.h"
 #include "eval/commands.h"
 #include "eval/gate.h"
+#include "eval/name_pattern.h"
 
 namespace vecino {
 namespace {
@@ -22,15 +22,6 @@ std::string spread_text(const MetricSpread& spread) {
     return short_number(spread.mean) + " +- " + short_number(spread.deviation);
 }
 
-std::regex compile(const std::string& only) {
-    try {
-        return std::regex(only);
-    } catch (const std::regex_error&) {
-        throw Error(ExitCode::usage, "command line: --only: found \"" + only +
-                                         "\", allowed: an ECMAScript regular expression");
-    }
-}
-
 struct Line {
     char mark;  ///< ' ' same, '~' other numbers, '!' the old baseline's gate fails, '+' new, '-'
                 ///< gone
@@ -40,7 +31,7 @@ struct Line {
 class Plan {
   public:
     Plan(const GateRun& run, const std::optional<Baseline>& old, const std::string& only)
-        : run_(run), old_(old), only_text_(only), only_(compile(only)) {
+        : run_(run), old_(old), only_(only) {
         if (!old || old->matrix == run.matrix) return;
         throw Error(ExitCode::usage, "baseline: found one of the matrix \"" + old->matrix +
                                          "\", allowed: of \"" + run.matrix + "\", or a new file");
@@ -51,14 +42,12 @@ class Plan {
         if (old_) plan_.baseline.groups = old_->groups;
         bool any = false;
         for (const RunGroup& group : run_.groups) {
-            if (!std::regex_search(group.name, only_)) continue;
+            if (!only_.matches(group.name)) continue;
             any = true;
             accept(group);
         }
         remove_gone();
-        if (!any)
-            throw Error(ExitCode::usage, "command line: --only: found \"" + only_text_ +
-                                             "\", allowed: an expression that matches a group");
+        if (!any) only_.fail_without_match();
         plan_.table = table();
         return std::move(plan_);
     }
@@ -117,8 +106,7 @@ class Plan {
 
     void remove_gone() {
         std::erase_if(plan_.baseline.groups, [&](const auto& entry) {
-            const bool gone =
-                run_.find(entry.first) == nullptr && std::regex_search(entry.first, only_);
+            const bool gone = run_.find(entry.first) == nullptr && only_.matches(entry.first);
             if (gone) {
                 ++plan_.changed;
                 lines_.push_back({'-', entry.first, "", "", "", "no longer in the matrix"});
@@ -153,8 +141,7 @@ class Plan {
 
     const GateRun& run_;
     const std::optional<Baseline>& old_;
-    std::string only_text_;
-    std::regex only_;
+    NamePattern only_;
     AcceptPlan plan_;
     std::vector<Line> lines_;
 };

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/channel_file.h"
 #include "core/planes.h"
 #include "eval/pixel_maps.h"
 #include "eval/pixel_values.h"
@@ -37,16 +38,6 @@ constexpr PlaneText kPlaneTexts[] = {
     {Plane::variance, "linear radiance^2", "of the pixel mean"},
 };
 // clang-format on
-
-float component(const glm::vec3& value, std::size_t c) {
-    return value[static_cast<int>(c)];
-}
-float component(float value, std::size_t) {
-    return value;
-}
-float component(std::int32_t value, std::size_t) {
-    return static_cast<float>(value);
-}
 
 VtiArray image_array(const std::string& name, const Image& image, const std::string& definition) {
     return {name, "linear radiance", definition, kRgb, [&image](std::size_t i, std::size_t c) {
