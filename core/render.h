@@ -34,8 +34,9 @@ enum class LightChoice {
     contribution,  ///< to a bound of what reaches the surface (Conty Estevez and Kulla 2018)
 };
 
-/// Whether light that a bounce finds by chance counts beside next-event estimation. It does so for
-/// emitters whose points are uniform over their area, at every surface but the last of a path.
+/// Whether light that a bounce finds by chance counts beside next-event estimation. It does so
+/// close to emitters whose points are uniform over their area; at a path's last surface, whose
+/// bounce is traced for this alone, only where that is close to all of the scene's emitters.
 enum class MultipleImportance {
     none,     ///< next-event estimation stands for all light of emitters
     balance,  ///< both count, weighed by the balance heuristic (Veach and Guibas 1995)

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "eval/commands.h"
 #include "eval/gate.h"
+#include "eval/gate_time.h"
 #include "eval/name_pattern.h"
 
 namespace vecino {
@@ -67,12 +68,24 @@ class Plan {
         const GateClass& gate = class_of(run_.classes, group.params);
         const BaselineGroup now = baseline_of(group, gate);
         const BaselineGroup* const then = old_group(group.name);
-        if (then == nullptr || !(*then == now)) {
+        const std::string new_time = then == nullptr ? "" : why_new_time(group, gate, *then);
+        if (then == nullptr || !(*then == now) || !new_time.empty()) {
             ++plan_.changed;
             plan_.baseline.groups[group.name] = now;
         }
+        if (!new_time.empty())
+            lines_.push_back({'~', group.name, "time_s", short_number(then->time_s.mean),
+                              short_number(now.time_s.mean), new_time});
         for (const auto& [metric, tolerance] : gate.tolerance_db)
             add_line(group, gate, metric, now);
+    }
+
+    /// Times differ from run to run: new ones are kept where the old ones stand in the way.
+    static std::string why_new_time(const RunGroup& group, const GateClass& gate,
+                                    const BaselineGroup& then) {
+        if (then.host != group.host()) return "another host";
+        const auto verdict = judge_time(group, gate, then);
+        return verdict && verdict->outcome == Outcome::fail ? "time: " + verdict->text : "";
     }
 
     void add_line(const RunGroup& group, const GateClass& gate, const GateMetric& metric,

@@ -16,10 +16,10 @@ using Json = nlohmann::json;
 
 constexpr int kFormat = 1;
 
-/// Six digits: more than noise leaves, and few enough to read.
+/// Nine digits: more than noise leaves, also of what is left of a similarity near 1.
 std::string number(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
+    std::snprintf(text, sizeof text, "%.9g", value);
     return text;
 }
 

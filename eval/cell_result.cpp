@@ -47,9 +47,9 @@ SourcedImage run_source(const Cell& cell, const CellInput& input, const RunDirec
     ExternalCommand command{{}, folder_of(*input.matrix), directory.file_in(folder, "command.log")};
     for (const std::string& argument : source.command)
         command.arguments.push_back(fill_template(argument, values));
-    std::filesystem::remove(output);  // what an earlier run left is no result
     std::vector<double> times;
     while (times.size() < static_cast<std::size_t>(input.matrix->repeat)) {
+        std::filesystem::remove(output);  // what an earlier go left is no result
         times.push_back(run_command(command));
         if (times.back() > kRepeatBelow_s) break;
     }

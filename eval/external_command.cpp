@@ -11,6 +11,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <thread>
 
 #include "core/error.h"
@@ -19,6 +20,9 @@
 
 namespace vecino {
 namespace {
+
+/// Stands for the status of a child whose end nobody told.
+constexpr int kUnknownEnd = -1;
 
 [[noreturn]] void fail(const ExternalCommand& command, const std::string& found) {
     throw Error(ExitCode::file, "command " + command.arguments.front() + ": " + found +
@@ -38,9 +42,14 @@ pid_t start(const ExternalCommand& command) {
     ::posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
     if (!command.folder.empty())
         ::posix_spawn_file_actions_addchdir_np(&actions, command.folder.c_str());
+    posix_spawnattr_t attributes;
+    ::posix_spawnattr_init(&attributes);
+    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    ::posix_spawnattr_setpgroup(&attributes, 0);
     pid_t child = 0;
     const int error =
-        ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+        ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+    ::posix_spawnattr_destroy(&attributes);
     ::posix_spawn_file_actions_destroy(&actions);
     if (error != 0) fail(command, std::string("found ") + std::strerror(error));
     return child;
@@ -49,12 +58,21 @@ pid_t start(const ExternalCommand& command) {
 /// Looks every now and then, in 1 % of the time that has passed, so that an interruption reaches
 /// the child at once and the time is right to 1 %.
 int wait_for(pid_t child, const Stopwatch& watch) {
+    constexpr double kPatience_s = 5;
     int status = 0;
-    bool is_told = false;
+    std::optional<double> told_s;
     for (;;) {
         const pid_t ended = ::waitpid(child, &status, WNOHANG);
-        if (ended == child || (ended < 0 && errno != EINTR)) return status;
-        if (interrupted() && !is_told) is_told = ::kill(child, SIGTERM) == 0;
+        if (ended == child) return status;
+        if (ended < 0 && errno != EINTR) return kUnknownEnd;
+        if (interrupted()) {  // its whole group: a script's renderer too
+            if (!told_s) {
+                told_s = watch.seconds();
+                ::kill(-child, SIGTERM);
+            } else if (watch.seconds() - *told_s > kPatience_s) {
+                ::kill(-child, SIGKILL);
+            }
+        }
         const double pause_s = std::clamp(0.01 * watch.seconds(), 1e-4, 0.05);
         std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
     }
@@ -67,6 +85,7 @@ double run_command(const ExternalCommand& command) {
     const int status = wait_for(start(command), watch);
     const double seconds = watch.seconds();
     if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
+    if (status == kUnknownEnd) fail(command, "found that its end is not told: SIGCHLD is ignored");
     if (WIFSIGNALED(status))
         fail(command,
              std::string("found that it was ended by signal ") + std::to_string(WTERMSIG(status)));

@@ -55,7 +55,9 @@ struct GateResult {
 
     [[nodiscard]] std::size_t count(Outcome outcome) const;
     [[nodiscard]] bool has_non_finite() const;
-    [[nodiscard]] bool passed() const { return count(Outcome::fail) == 0; }
+    [[nodiscard]] bool passed() const {
+        return count(Outcome::fail) == 0 && count(Outcome::pass) > 0;
+    }
 };
 
 /// Throws Error(usage) if the baseline is of another matrix.

@@ -170,6 +170,9 @@ std::string gate_headline(const GateResult& result) {
     const std::size_t judged = failed + result.count(Outcome::pass);
     const std::string what = "of " + std::to_string(judged) + " comparisons in " +
                              std::to_string(result.groups) + " groups of " + result.matrix;
+    if (judged == 0)
+        return "FAIL: nothing to judge in " + std::to_string(result.groups) + " groups of " +
+               result.matrix;
     if (failed == 0) return "PASS: none " + what + " failed";
     return "FAIL: " + std::to_string(failed) + " " + what + " failed, worst first";
 }

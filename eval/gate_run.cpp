@@ -33,6 +33,8 @@ Json comparable(const Json& params) {
 Json question_of(const Json& row) {
     Json question = without(row.value("params", Json::object()), {"seed", "scene"});
     question["scene_hash"] = row.value("scene_hash", Json());
+    if (const std::string hash = row.value("reference_hash", ""); !hash.empty())
+        question["reference_hash"] = hash;
     // Size, depth and the rest are those of the cell.
     question["reference"] = without(row.value("reference", Json::object()),
                                     {"scene", "size", "max_depth", "reduction", "first_hit"});
@@ -61,6 +63,8 @@ class Reader {
         result_.matrix = matrix_.name;
         result_.versions = json.at("versions").raw();
         result_.classes = read_gate_classes(JsonValue(matrix_.document, file));
+        for (const Json& name : run.value("stale", Json::array()))
+            if (name.is_string()) stale_.insert(name.get<std::string>());
         find_changed_scenes();
     }
 
@@ -88,6 +92,8 @@ class Reader {
             return "another reference";
         if (row.value("build", Json()) != result_.versions.value("build", Json()))
             return "another build than the run's last";
+        if (stale_.contains(cell.name))
+            return "made by another build or packet width, or from other files than there are now";
         if (changed_scenes_.contains(row.value("scene", "")))
             return "the scene file changed between its cells";
         return "";
@@ -128,6 +134,7 @@ class Reader {
     std::map<std::string, Json> rows_;
     Matrix matrix_;
     GateRun result_;
+    std::set<std::string> stale_;  ///< cells, by the run itself
     std::set<std::string> changed_scenes_;
     std::map<std::string, std::size_t> index_;
 };

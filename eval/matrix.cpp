@@ -49,7 +49,9 @@ bool decides_ceiling(std::string_view option) {
 }
 
 /// Of an image from elsewhere that rebuilds a frame of ours, all that decides the frame.
-bool reads(const ImageSource& image, std::string_view option) {
+bool reads(const Cell& cell, std::string_view option) {
+    const ImageSource& image = *cell.image;
+    if (cell.is_against_render && (option == "size" || option == "max_depth")) return true;
     if (option == "size")
         return image.reads_frame() || image.reads("width") || image.reads("height");
     return image.reads_frame() || image.reads(option);
@@ -60,7 +62,7 @@ bool decides(const Cell& cell, std::string_view option) {
         case CellKind::blocky_ceiling:
             return decides_ceiling(option);
         case CellKind::image:
-            return reads(*cell.image, option);
+            return reads(cell, option);
         case CellKind::path:
             return option != "reduction";
         case CellKind::scheme:
@@ -151,9 +153,10 @@ class Expansion {
     void add_image(const Assignment& assignment, const JsonValue& name) {
         Cell cell = make_cell(assignment, CellKind::image);
         cell.image = matrix_.images.at(name.string());
+        cell.is_against_render = matrix_.reference_source == nullptr;
         Assignment read = assignment;
-        std::erase_if(read, [&](const auto& entry) { return !reads(*cell.image, entry.first); });
-        if (!reads(*cell.image, "seed")) cell.settings.seed = RenderSettings{}.seed;
+        std::erase_if(read, [&](const auto& entry) { return !reads(cell, entry.first); });
+        if (!reads(cell, "seed")) cell.settings.seed = RenderSettings{}.seed;
         cell.group = stem(cell.scene) + "." + cell.method();
         if (read.contains("reduction")) append_render_slugs(cell.group, read, {"reduction"});
         append_render_slugs(cell.group, read);

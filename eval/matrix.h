@@ -34,6 +34,7 @@ struct Cell {
     CellKind kind = CellKind::path;
     const Scheme* scheme = nullptr;            ///< null unless it is a scheme
     std::shared_ptr<const ImageSource> image;  ///< null unless it is an image from elsewhere
+    bool is_against_render = true;             ///< which has the cell's size and depth; else a file
     Budget budget = Budget::same_spp;
     int spp_asked =
         0;  ///< of path tracing at full resolution; settings.spp is what the budget gave

@@ -160,7 +160,10 @@ void move_files(Json& base, const fs::path& from, const fs::path& to) {
 /// What the file says, over what it extends: the parts of kParts key by key, the rest as a whole.
 Json merged(Json base, const Json& own) {
     for (const auto& [key, value] : own.items()) {
-        const bool is_part = std::ranges::find(kParts, key) != std::end(kParts);
+        const auto is_file = [](const Json& json) { return json.contains("file"); };
+        const bool is_other_kind =
+            key == "reference" && base.contains(key) && is_file(value) != is_file(base[key]);
+        const bool is_part = std::ranges::find(kParts, key) != std::end(kParts) && !is_other_kind;
         if (is_part && base.contains(key) && value.is_object()) {
             base[key].update(value);
         } else if (key != "extends") {

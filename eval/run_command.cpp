@@ -5,6 +5,8 @@
 #include <memory>
 #include <set>
 
+#include "core/files.h"
+#include "eval/cell_sources.h"
 #include "eval/commands.h"
 #include "eval/progress.h"
 #include "eval/report.h"
@@ -83,6 +85,7 @@ void check_inputs(const Matrix& matrix, const RunOptions& options) {
     for (const Cell& cell : cells) {
         if (traces_scene(matrix, cell) && scenes.insert(cell.scene).second)
             (void)load_scene(cell.scene);
+        if (matrix.reference_source != nullptr) require_readable(reference_path(matrix, cell));
     }
 }
 

@@ -11,6 +11,7 @@
 #include "core/files.h"
 #include "core/timing.h"
 #include "eval/cell_result.h"
+#include "eval/cell_sources.h"
 #include "eval/commands.h"
 #include "eval/equal_time.h"
 #include "eval/frame_jobs.h"
@@ -144,24 +145,6 @@ class Runner {
         scene_hashes_[cell.scene] = text_hash(read_file(cell.scene));
     }
 
-    /// Tells states of the files that hold the cell's image and its reference; empty where none do.
-    std::string files_hash(const Cell& cell) const {
-        const auto hash = [](const std::string& path) {
-            return std::filesystem::exists(path) ? text_hash(read_file(path)) : "no file";
-        };
-        std::string text;
-        if (cell.kind == CellKind::image && !cell.image->file.empty())
-            text += hash(sourced_path(matrix_, cell.image->file,
-                                      placeholders_of(cell.scene, cell.settings)));
-        if (matrix_.reference_source != nullptr) text += hash(reference_path(cell));
-        return text;
-    }
-
-    std::string reference_path(const Cell& cell) const {
-        return sourced_path(matrix_, matrix_.reference_source->file,
-                            placeholders_of(cell.scene, cell.settings));
-    }
-
     CellState state_of(const Cell& cell) const {
         const auto old = old_rows_.find(cell.name);
         if (old == old_rows_.end()) return CellState::missing;
@@ -179,18 +162,22 @@ class Runner {
             row.value("build", nlohmann::json()) == build_ &&
             row.value("simd_width", nlohmann::json()) == simd_width_ &&
             row.value("scene_hash", nlohmann::json()) == scene_hashes_.at(cell.scene) &&
-            row.value("files_hash", "") == files_hash(cell);
+            row.value("image_hash", "") == image_hash(matrix_, cell) &&
+            row.value("reference_hash", "") == reference_hash(matrix_, cell);
         return same_program ? CellState::finished : CellState::stale;
     }
 
     // A row stays until a new one takes its place: an interruption loses nothing.
     void keep_old_rows(RunSummary& summary) {
+        run_["stale"] = nlohmann::json::array();  // which a gate must not take for results of now
         for (const PlannedCell& planned : plan_) {
             if (planned.state == CellState::missing) continue;
             rows_[planned.cell->name] = old_rows_.at(planned.cell->name);
             if (planned.run) continue;
             ++summary.kept;
-            summary.stale += planned.state == CellState::stale ? 1 : 0;
+            if (planned.state != CellState::stale) continue;
+            ++summary.stale;
+            run_["stale"].push_back(planned.cell->name);
         }
     }
 
@@ -278,7 +265,7 @@ class Runner {
     }
 
     const StoredReference& reference_from_file(const Cell& cell) {
-        const std::string path = reference_path(cell);
+        const std::string path = reference_path(matrix_, cell);
         const std::string key = reference_json(matrix_, cell).dump() + text_hash(read_file(path));
         return references_.get(key, stem(cell.scene), [&] {
             return ReferenceHalves{
@@ -328,7 +315,8 @@ class Runner {
                            {"reference_file", input.reference->file},
                            {"reference_error", input.reference->error},
                            {"scene_hash", scene_hashes_.at(cell.scene)},
-                           {"files_hash", files_hash(cell)},
+                           {"image_hash", image_hash(matrix_, cell)},
+                           {"reference_hash", reference_hash(matrix_, cell)},
                            {"build", build_},
                            {"simd_width", simd_width_},
                            {"host", run_["versions"]["cpu"]}};

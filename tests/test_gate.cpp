@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "eval/gate_report.h"
 #include "tests/catch.h"
 #include "tests/error_of.h"
 #include "tests/gate_groups.h"
@@ -174,8 +175,10 @@ TEST_CASE("samples that a budget measured are not gated where they differ", "[ga
     CHECK(check_run(run, baseline).count(Outcome::pass) > 0);
     run.groups.front().question["spp"] = 17;
     const GateResult result = check_run(run, baseline);
-    CHECK(result.passed());
+    CHECK(result.count(Outcome::fail) == 0);
     CHECK(result.count(Outcome::pass) == 0);
+    CHECK_FALSE(result.passed());  // nothing was judged
+    CHECK(gate_headline(result).starts_with("FAIL: nothing to judge"));
     CHECK(verdict_of(result.verdicts, "measured budget").outcome == Outcome::not_gated);
 }
 

@@ -113,6 +113,10 @@ TEST_CASE("files are run, accepted, checked and reported on from the command lin
     CHECK_THAT(read_file(matrix.directory + "/report.html"),
                Catch::Matchers::Contains("file {scene}.exr"));
     save_image(plain(0.0f), matrix.temp.path("attic_second.png"));
+    CHECK(code_of("run files.json -o run") == 0);
+    const Outcome stale = run_in(matrix.temp, "check run --baseline baseline.json");
+    CHECK(stale.code == 2);
+    CHECK_THAT(stale.out, Catch::Matchers::Contains("stale cell"));
     CHECK(code_of("run files.json -o run --rerun stale") == 0);
     CHECK(code_of("check run --baseline baseline.json") == 2);
 }
@@ -199,6 +203,10 @@ TEST_CASE("a command makes the image, with the clock running", "[image_source]")
     const auto folder = std::filesystem::path(run.image_file("box.made.s1")).parent_path();
     CHECK_FALSE(std::filesystem::exists(folder / "made.exr"));
 
+    CHECK(run.run().stale == 0);
+    save_image(plain(0.25f, {16, 12}), run.temp.path("box.exr"));  // named by an argument
+    CHECK(run.run({.only = "", .rerun = Rerun::stale}).done == 1);
+
     run.command({"sh", "-c", "echo seed $1; cp box.exr \"$2\"", "sh", "{seed}", "{output}"});
     CHECK(run.run().done == 2);
     CHECK(read_file((folder / "command.log").string()) == "seed 1\n");
@@ -248,6 +256,28 @@ TEST_CASE("images stand beside schemes, held against the same reference", "[imag
           rows.at("box.nearest.f2.s1")["reference_file"]);
     const auto groups = summarise(run.row_list(), {});
     CHECK_THAT(summary_table(groups), Catch::Matchers::Contains("box.made"));
+}
+
+TEST_CASE("held against a render, an image is of its size and depth", "[image_source]") {
+    CommandRun run;
+    run.json["axes"]["max_depth"] = {1, 2};
+    CHECK(run.run().failed == 0);
+    const auto rows = run.rows();
+    CHECK(rows.at("box.made.d1.s1")["reference_file"] !=
+          rows.at("box.made.d2.s1")["reference_file"]);
+}
+
+TEST_CASE("a matrix may put a file in the place of a render that it extends", "[image_source]") {
+    const FileMatrix matrix;
+    (void)matrix.load();
+    matrix.temp.write("render.json",
+                      R"({"extends": "files.json", "name": "render", "reference": {"spp": 4}})");
+    matrix.temp.write(
+        "file.json",
+        R"({"extends": "render.json", "name": "file", "reference": {"file": "attic.exr"}})");
+    CHECK(load_matrix(matrix.temp.path("render.json")).reference.spp == 4);
+    CHECK(load_matrix(matrix.temp.path("render.json")).reference_source == nullptr);
+    CHECK(load_matrix(matrix.temp.path("file.json")).reference_source->file == "attic.exr");
 }
 
 TEST_CASE("faults of images are told before anything runs", "[image_source]") {
