@@ -176,7 +176,9 @@ ImageSource read_reference_source(const JsonValue& json) {
 }
 
 nlohmann::json image_source_schema() {
-    return object_schema(kKeys);
+    nlohmann::json schema = object_schema(kKeys);
+    for (const char* key : {"file", "command"}) schema["oneOf"].push_back({{"required", {key}}});
+    return schema;
 }
 
 Placeholders placeholders_of(const std::string& scene_file, const RenderSettings& settings) {

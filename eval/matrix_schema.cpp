@@ -87,7 +87,11 @@ json reference_schema() {
     json schema{{"type", "object"}, {"additionalProperties", false}};
     schema["properties"]["file"] = {{"type", "string"}};
     schema["properties"]["channels"] = array_schema(kText.schema(), {3, 3});
-    schema["dependentRequired"]["channels"] = {"file"};
+    // A file has been rendered: it is told no options, and only it has channels of other names.
+    json options;
+    for (const char* key : {"spp", "light_sampling", "sampler", "seed"})
+        options["anyOf"].push_back({{"required", {key}}});
+    schema["dependencies"] = {{"channels", {"file"}}, {"file", {{"not", options}}}};
     for (const std::string key : {"spp", "light_sampling", "sampler", "seed"}) {
         schema["properties"][key] = {{"$ref", kOneValue + key}};
     }

@@ -2,7 +2,6 @@
 //
 // A reference's own error, and which results it limits.
 #include <cmath>
-#include <random>
 #include <string>
 
 #include "core/color.h"
@@ -15,6 +14,7 @@
 #include "eval/seed_statistics.h"
 #include "tests/catch.h"
 #include "tests/error_of.h"
+#include "tests/gauss.h"
 #include "tests/tiny_run.h"
 
 using namespace vecino;
@@ -22,20 +22,6 @@ using namespace vecino;
 namespace {
 
 using Json = nlohmann::json;
-
-/// Whole numbers of the generator alone, so that every library draws the same.
-class Gauss {
-  public:
-    explicit Gauss(unsigned seed) : engine_(seed) {}
-    double operator()() {
-        const double radius = std::sqrt(-2 * std::log(unit()));
-        return radius * std::cos(2 * std::acos(-1.0) * unit());
-    }
-
-  private:
-    double unit() { return (static_cast<double>(engine_()) + 0.5) * 0x1p-32; }
-    std::mt19937 engine_;
-};
 
 Image disturbed(const Image& image, double sigma, unsigned seed) {
     Gauss gauss(seed);

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "eval/statistics.h"
 #include "tests/catch.h"
 #include "tests/error_of.h"
+#include "tests/gauss.h"
 
 using namespace vecino;
 
@@ -29,20 +29,6 @@ struct Disturbance {
 };
 
 constexpr PerRegion<Disturbance> kDisturbances = {{{0.04, 0.01}, {0.02, 0.03}, {-0.03, 0.02}}};
-
-/// Whole numbers of the generator alone, so that every library draws the same.
-class Gauss {
-  public:
-    explicit Gauss(unsigned seed) : engine_(seed) {}
-    double operator()() {
-        const double radius = std::sqrt(-2 * std::log(unit()));
-        return radius * std::cos(2 * std::acos(-1.0) * unit());
-    }
-
-  private:
-    double unit() { return (static_cast<double>(engine_()) + 0.5) * 0x1p-32; }
-    std::mt19937 engine_;
-};
 
 /// Stripes of all three regions.
 RegionMap stripes(Extent size) {
