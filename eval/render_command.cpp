@@ -146,7 +146,6 @@ ExitCode render_samples(const RenderArguments& arguments, const RenderSettings& 
     });
     const RenderStatistics& s = result.statistics;
     Metadata metadata = render_metadata(arguments.scene, settings, s.scene_s + s.trace_s);
-    describe_method(all_methods().front(), {}, metadata);
     describe_part(hash, s, metadata);
     const Stopwatch write_watch;
     save_part(result.part, arguments.output, metadata);
