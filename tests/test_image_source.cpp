@@ -245,6 +245,19 @@ TEST_CASE("a command rebuilds a frame that vecino traces", "[image_source]") {
     }
 }
 
+TEST_CASE("a command gets the planes that it asks for", "[image_source]") {
+    CommandRun run;
+    run.command({"cp", "{input}", "{output}"});
+    run.json["images"]["made"]["planes"] = {"albedo_mean"};
+    run.json["images"]["made"]["channels"] = {"AlbedoMean.R", "AlbedoMean.G", "AlbedoMean.B"};
+    run.run();
+    const std::string reason = run.row()["reason"].get<std::string>();
+    CHECK_THAT(reason, Catch::Matchers::Contains("8x6"));  // read, and of the frame's size
+    run.json["images"]["made"]["channels"] = {"N.X", "N.Y", "N.Z"};
+    run.run();
+    CHECK_THAT(run.row()["reason"].get<std::string>(), Catch::Matchers::Contains("N.X"));
+}
+
 TEST_CASE("images stand beside schemes, held against the same reference", "[image_source]") {
     CommandRun run;
     run.json["axes"].erase("image");
@@ -314,6 +327,14 @@ TEST_CASE("faults of images are told before anything runs", "[image_source]") {
     SECTION("two times") {
         first["time_attribute"] = "seconds";
         matrix.expect_fault("found both \"time_s\" and \"time_attribute\"");
+    }
+    SECTION("an unknown plane") {
+        first = {{"command", {"cp", "{input}", "{output}"}}, {"planes", {"normals"}}};
+        matrix.expect_fault("/images/first/planes/0: found \"normals\", allowed: radiance, direct");
+    }
+    SECTION("planes of no frame") {
+        first["planes"] = {"normal"};
+        matrix.expect_fault("/images/first/planes: found planes, and no {input}");
     }
     SECTION("an output of no known kind") {
         first = {{"command", {"cp", "{output}"}}, {"output", ".jpg"}};
