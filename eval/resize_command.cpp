@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What image programs do without knowing the scene: anchors for the charts.
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "core/files.h"
 #include "core/image_io.h"
 #include "core/named_values.h"
 #include "core/timing.h"
 #include "eval/commands.h"
+#include "eval/render_metadata.h"
 #include "eval/render_options.h"
 
 namespace vecino {
@@ -59,7 +62,10 @@ ExitCode run_resize(const ResizeArguments& arguments) {
         std::printf("%s: %s, %s, %.2f ms\n", arguments.output.c_str(), arguments.size.c_str(),
                     arguments.filter.c_str(), 1e3 * resize_s);
     }
-    return report_non_finite(count_non_finite(result.radiance), arguments.output);
+    RenderStatistics counts;
+    counts.non_finite_pixels = static_cast<std::uint64_t>(std::ranges::count_if(
+        result.radiance.values(), [](const glm::vec3& rgb) { return !is_finite(rgb); }));
+    return report_non_finite(counts, arguments.output);
 }
 
 }  // namespace

@@ -245,6 +245,24 @@ TEST_CASE("a command rebuilds a frame that vecino traces", "[image_source]") {
     }
 }
 
+TEST_CASE("this program is at hand for commands", "[image_source]") {
+    const Placeholders values = placeholders_of("box.json", {});
+    CHECK(std::filesystem::equivalent(values.at("vecino"), "/proc/self/exe"));
+}
+
+TEST_CASE("resizing by colour alone says what it took", "[image_source]") {
+    CommandRun run;
+    run.command({VECINO_PROGRAM, "resize", "{input}", "-o", "{output}", "--size",
+                 "{width}x{height}", "--filter", "nearest", "--repeat", "3"});
+    run.json["images"]["made"]["time_attribute"] = "seconds";
+    run.json["include"] = {{{"scheme", "nearest"}}};
+    CHECK(run.run().failed == 0);
+    const auto rows = run.rows();
+    const Json made = rows.at("box.made.s1");
+    CHECK(made["metrics"] == rows.at("box.nearest.f2.s1")["metrics"]);
+    CHECK(made["time_s"]["reconstruct"].get<double>() > 0);
+}
+
 TEST_CASE("a command gets the planes that it asks for", "[image_source]") {
     CommandRun run;
     run.command({"cp", "{input}", "{output}"});
