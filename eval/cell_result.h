@@ -24,8 +24,12 @@ struct CellInput {
     const StoredReference* reference = nullptr;
 };
 
+/// Of a cell that fails: status "failed" and a "reason".
+nlohmann::json failed_result(const std::string& reason);
+
 /// Makes the cell's image, saves it in the run directory and returns "status", "metrics", "time_s"
-/// and "counts" of its row. A cell that fails gets status "failed" and a "reason".
+/// and "counts" of its row, or that of a cell that fails. Throws WriteError where there is no room
+/// for the image, Error(interrupted).
 nlohmann::json cell_result(const Cell& cell, const CellInput& input, const RunDirectory& directory);
 
 }  // namespace vecino
