@@ -109,7 +109,8 @@ void remove_abandoned(const std::string& folder) {
 TemporaryFile::TemporaryFile(const std::string& target) : target_(target) {
     if (is_directory(target)) cannot_write(target, "it is a directory");
     const fs::path folder = fs::path(target).parent_path();
-    const std::string path = (folder / temporary_name(fs::path(target).extension().string())).string();
+    const std::string path =
+        (folder / temporary_name(fs::path(target).extension().string())).string();
     stream_ = std::fopen(path.c_str(), "w+b");
     if (stream_ == nullptr) {
         const std::string reason = std::strerror(errno);

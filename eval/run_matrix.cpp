@@ -16,7 +16,6 @@
 #include "eval/equal_time.h"
 #include "eval/frame_jobs.h"
 #include "eval/progress.h"
-#include "eval/reference_error.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
 
@@ -25,20 +24,6 @@ namespace {
 
 std::string frame_key(const std::string& scene, const RenderSettings& settings) {
     return frame_json(scene, settings).dump();
-}
-
-/// Of the whole image, and of its regions.
-void mark_limited(nlohmann::json& row) {
-    if (!row.contains("metrics")) return;
-    const auto flag = [&](const nlohmann::json& metrics, const std::string& region) {
-        const auto is_limited =
-            limited_by_reference(metrics, part_of_error(row["reference_error"], region));
-        return is_limited ? nlohmann::json(*is_limited) : nlohmann::json();
-    };
-    row["limited_by_reference"] = flag(row["metrics"], "");
-    if (!row["metrics"].contains("regions")) return;
-    for (const auto& [name, region] : row["metrics"]["regions"].items())
-        row["limited_regions"][name] = flag(region, name);
 }
 
 double traced_samples(const RenderSettings& settings) {
