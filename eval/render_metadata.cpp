@@ -16,8 +16,10 @@ struct AttributeText {
 }  // namespace
 
 Metadata render_metadata(const std::string& scene, const RenderSettings& settings, double seconds) {
-    Metadata metadata{
-        {"scene", scene}, {"version", VECINO_VERSION}, {"seconds", static_cast<float>(seconds)}};
+    Metadata metadata{{"scene", scene},
+                      {"version", VECINO_VERSION},
+                      {"seconds", static_cast<float>(seconds)},
+                      {"method", std::string(all_methods().front().name)}};
     for (const RenderOption& row : render_options()) {
         const nlohmann::json value = row.get(settings);
         const std::string key = row.name == "max_depth" ? "depth" : std::string(row.name);

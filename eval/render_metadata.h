@@ -12,10 +12,11 @@
 
 namespace vecino {
 
-/// Scene, version, seconds, and every option of a render under its name ("depth" for max_depth).
+/// Of path tracing: scene, version, seconds, method, and every option of a render under its name
+/// ("depth" for max_depth).
 Metadata render_metadata(const std::string& scene, const RenderSettings& settings, double seconds);
 
-/// Adds the method's name and those of its options that it reads.
+/// Of another method: its name and those of its options that it reads.
 void describe_method(const Method& method, const MethodParameters& parameters, Metadata& metadata);
 
 /// An attribute as text, for errors.
