@@ -7,10 +7,12 @@
 #include <string>
 #include <variant>
 
+#include "core/image_io.h"
 #include "core/json_read.h"
 #include "core/render.h"
 #include "core/scene.h"
 #include "tests/fuzz/contract.h"
+#include "tests/temp_dir.h"
 
 using namespace vecino;
 using fuzz::require;
@@ -36,6 +38,7 @@ void check(const TriangleMesh& mesh) {
     for (const auto& triangle : mesh.indices)
         for (const std::uint32_t corner : triangle) require(corner < count, "index of a mesh");
     require(mesh.normals_world.empty() || mesh.normals_world.size() == count, "normals of a mesh");
+    require(mesh.uvs.empty() || mesh.uvs.size() == count, "uvs of a mesh");
     for (const glm::vec3& normal : mesh.normals_world)
         require(std::abs(glm::length(normal) - 1.0f) < 1e-3f, "normal of a mesh that is not unit");
 }
@@ -78,12 +81,22 @@ void check_render(const Scene& scene, Sampler sampler) {
             "object id " + std::to_string(id));
 }
 
+/// In a folder with a texture, t.png.
+std::string scene_path() {
+    static const TempDir dir;
+    Image texture({2, 2});
+    texture(0, 0) = {1.0f, 0.5f, 0.0f};
+    save_image(texture, dir.path("t.png"));
+    return dir.path("a.json");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const std::string path = scene_path();
     const std::string text(reinterpret_cast<const char*>(data), size);
     Scene scene;
-    const auto read = [&] { scene = parse_scene(parse_json_text(text, "a.json"), "a.json"); };
+    const auto read = [&] { scene = parse_scene(parse_json_text(text, path), path); };
     if (!fuzz::gives_result(read)) return 0;
     check(scene);
     constexpr std::size_t kMostSurfaces = 200;
