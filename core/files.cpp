@@ -130,8 +130,7 @@ void TemporaryFile::replace_target() {
     const bool wrote = std::ferror(stream_) == 0;  // all so far
     const bool whole = std::fclose(std::exchange(stream_, nullptr)) == 0 && wrote;
     if (!whole) {
-        cannot_write(target_,
-                     errno != 0 ? std::strerror(errno) : "a write failed, as on a full disk");
+        cannot_write(target_, errno != 0 ? std::strerror(errno) : kWriteFailed);
     }
     std::error_code error;
     fs::rename(path_, target_, error);

@@ -18,6 +18,9 @@ class WriteError : public Error {
     explicit WriteError(const std::string& message) : Error(ExitCode::file, message) {}
 };
 
+/// The reason where the system gives none.
+constexpr const char* kWriteFailed = "a write failed, as on a full disk";
+
 /// Throws Error(file): "PATH: cannot be read: REASON", on one line.
 [[noreturn]] void cannot_read(const std::string& path, const std::string& reason);
 /// The same with WriteError.

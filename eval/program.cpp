@@ -44,8 +44,8 @@ void require_printed() {
     errno = 0;
     const bool printed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
     if (!printed) {
-        const char* const reason = errno != 0 ? std::strerror(errno) : "a write failed";
-        cannot_write("standard output", reason);
+        const char* const known = errno != 0 ? std::strerror(errno) : nullptr;
+        cannot_write("standard output", known != nullptr ? known : kWriteFailed);
     }
 }
 

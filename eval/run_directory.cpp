@@ -30,7 +30,7 @@ void write_text_file(const std::string& path, const std::string& text) {
     std::ofstream stream(file.path(), std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream) cannot_write(path, "a write failed, as on a full disk");
+    if (!stream) cannot_write(path, kWriteFailed);
     file.replace_target();
 }
 
@@ -90,7 +90,7 @@ void RunDirectory::append(const nlohmann::json& row) const {
     std::ofstream stream(path, std::ios::app | std::ios::binary);
     stream << (ends_line ? "" : "\n") << row.dump() << "\n";
     stream.close();
-    if (!stream) cannot_write(path, "a write failed, as on a full disk");
+    if (!stream) cannot_write(path, kWriteFailed);
 }
 
 void RunDirectory::write_run(const nlohmann::json& run) const {

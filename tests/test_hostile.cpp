@@ -56,8 +56,8 @@ TEST_CASE("results that standard output has no room for are no success", "[hosti
         const Outcome outcome =
             run_line(dir, "( exec '" VECINO_PROGRAM "' " + arguments + " >/dev/full )");
         CHECK(outcome.code == 4);
-        CHECK(outcome.err ==
-              "vecino: standard output: cannot be written: No space left on device\n");
+        CHECK(outcome.err.starts_with("vecino: standard output: cannot be written: "));
+        CHECK(is_one_line(outcome.err));
     }
 }
 
