@@ -23,7 +23,7 @@ for target in matrix planes scene schemes; do
     mkdir "$log.d/$target"
     echo "fuzz_$target, $seconds s"
     build/fuzz/fuzz_$target -artifact_prefix=build/fuzz/found/$target- -max_total_time="$seconds" -timeout=120 \
-        -max_len=4096 -rss_limit_mb=4096 -malloc_limit_mb=100000 "$log.d/$target" tests/fuzz/corpus/$target \
+        -max_len=8192 -rss_limit_mb=4096 -malloc_limit_mb=100000 "$log.d/$target" tests/fuzz/corpus/$target \
         >"$log" 2>&1 || { tail -60 "$log" >&2; exit 1; }
     tail -1 "$log"
 done
