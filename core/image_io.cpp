@@ -52,9 +52,13 @@ Source open_source(const std::string& path) {
     OIIO::attribute("tiff:multithread", 0);  // its other threads keep their errors to themselves
     ImageSpec hints;
     hints.attribute("oiio:UnassociatedAlpha", 1);  // else colours come multiplied by alpha
-    Source source{path, ImageInput::open(path, &hints), {}};
+    // By its extension: ImageInput::open() hands a broken file to all of the library's two dozen
+    // decoders in turn.
+    Source source{path, ImageInput::create(path), {}};
     if (!source.input) cannot_read(path, first_fault(OIIO::geterror()));
-    source.spec = source.input->spec(0);
+    if (!source.input->open(path, source.spec, hints)) {
+        cannot_read(path, first_fault(source.input->geterror()));
+    }
     const ImageSpec& spec = source.spec;
     if (spec.deep || spec.depth > 1) cannot_read(path, "deep and volume images are not supported");
     const std::string fault = size_fault({spec.width, spec.height});

@@ -4,11 +4,13 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/image_io.h"
 #include "core/timing.h"
 #include "eval/ceiling.h"
 #include "eval/external_command.h"
 #include "eval/metrics_json.h"
+#include "eval/reference_error.h"
 
 namespace vecino {
 namespace {
@@ -32,15 +34,24 @@ BuiltImage reconstruct_timed(const Cell& cell, const Frame& low, int repeat) {
     return built;
 }
 
+void require_made(const std::filesystem::path& output, const ExternalCommand& command) {
+    if (std::filesystem::exists(output)) return;
+    throw Error(ExitCode::file, "command " + command.arguments.front() +
+                                    ": found no file at {output}, allowed: an image there (" +
+                                    command.log + ")");
+}
+
 /// Runs the source's command, on the traced frame if it reads one.
 SourcedImage run_source(const Cell& cell, const CellInput& input, const RunDirectory& directory) {
     const ImageSource& source = *cell.image;
     const std::string folder = "cells/" + cell.name;
     Placeholders values = placeholders_of(cell.scene, cell.settings);
-    const std::filesystem::path output =
-        std::filesystem::absolute(directory.file_in(folder, "made" + source.output));
-    const std::filesystem::path frame =
-        std::filesystem::absolute(directory.file_in(folder, "input.exr"));
+    const auto temporary = [&](const std::string& extension) {
+        // Of this run alone: a command that outlives a killed run goes on writing to its own.
+        return std::filesystem::absolute(directory.file_in(folder, temporary_name(extension)));
+    };
+    const std::filesystem::path output = temporary(source.output);
+    const std::filesystem::path frame = temporary(".exr");
     values["output"] = output.string();
     values["input"] = frame.string();
     if (source.reads_frame()) save_frame(input.traced->render.frame, frame.string());
@@ -51,6 +62,7 @@ SourcedImage run_source(const Cell& cell, const CellInput& input, const RunDirec
     while (times.size() < static_cast<std::size_t>(input.matrix->repeat)) {
         std::filesystem::remove(output);  // what an earlier go left is no result
         times.push_back(run_command(command));
+        require_made(output, command);
         if (times.back() > kRepeatBelow_s) break;
     }
     SourcedImage made = load_sourced_image(source, output.string());
@@ -153,14 +165,33 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
 
 }  // namespace
 
+nlohmann::json failed_result(const std::string& reason) {
+    return {{"status", "failed"}, {"reason", reason}};
+}
+
 nlohmann::json cell_result(const Cell& cell, const CellInput& input,
                            const RunDirectory& directory) {
     try {
         return measure(cell, input, directory);
+    } catch (const WriteError&) {
+        throw;  // no fault of the cell: the run goes on from here once there is room
     } catch (const Error& error) {
         if (error.code() == ExitCode::interrupted) throw;
-        return {{"status", "failed"}, {"reason", error.what()}};
+        return failed_result(error.what());
     }
+}
+
+void mark_limited(nlohmann::json& row) {
+    if (!row.contains("metrics")) return;
+    const auto flag = [&](const nlohmann::json& metrics, const std::string& region) {
+        const auto is_limited =
+            limited_by_reference(metrics, part_of_error(row["reference_error"], region));
+        return is_limited ? nlohmann::json(*is_limited) : nlohmann::json();
+    };
+    row["limited_by_reference"] = flag(row["metrics"], "");
+    if (!row["metrics"].contains("regions")) return;
+    for (const auto& [name, region] : row["metrics"]["regions"].items())
+        row["limited_regions"][name] = flag(region, name);
 }
 
 }  // namespace vecino

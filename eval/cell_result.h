@@ -23,8 +23,16 @@ struct CellInput {
     const StoredReference* reference = nullptr;
 };
 
+/// Of a cell that fails: status "failed" and a "reason".
+nlohmann::json failed_result(const std::string& reason);
+
 /// Makes the cell's image, saves it in the run directory and returns "status", "metrics", "time_s"
-/// and "counts" of its row. A cell that fails gets status "failed" and a "reason".
+/// and "counts" of its row, or that of a cell that fails. Throws WriteError where there is no room
+/// for the image, Error(interrupted).
 nlohmann::json cell_result(const Cell& cell, const CellInput& input, const RunDirectory& directory);
+
+/// Says in a row whether its error is close to that of its reference, of the whole image and of its
+/// regions.
+void mark_limited(nlohmann::json& row);
 
 }  // namespace vecino

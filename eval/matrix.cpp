@@ -2,12 +2,14 @@
 #include "eval/matrix.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "eval/axes.h"
 #include "eval/render_options.h"
 
@@ -27,6 +29,29 @@ void for_each_assignment(const Axes& axes, const std::function<void(const Assign
         }
     };
     descend(axes.begin());
+}
+
+/// Before any is made: more would take days to run, and fill the memory before.
+void require_few_cells(const Axes& axes, const JsonValue& json) {
+    constexpr double kMostCells = 100000;
+    double count = 1;
+    for (const auto& [key, values] : axes) count *= static_cast<double>(values.size());
+    if (count <= kMostCells) return;
+    char text[64];
+    std::snprintf(text, sizeof text, "%.10g cells", count);
+    json.fail(text, "at most 100000");
+}
+
+/// Cells have folders of their names.
+void require_folder_name(const std::string& name, const std::string& file) {
+    constexpr std::size_t kLongest = 200;
+    const bool is_long = name.size() > kLongest;
+    if (!is_long && name == one_line(name)) return;
+    throw Error(ExitCode::usage,
+                one_line(file + ": /axes: found the cell name " +
+                         (is_long ? name.substr(0, 60) + "... of " + std::to_string(name.size()) +
+                                        " bytes, allowed: at most 200"
+                                  : name + ", allowed: names without control characters")));
 }
 
 bool matches(const Assignment& cell, const Axes& pattern) {
@@ -96,6 +121,7 @@ class Expansion {
 
   private:
     void add_axes(const Axes& axes) {
+        require_few_cells(axes, json_.at("axes"));
         std::vector<Axes> excluded;
         if (json_.has("exclude")) {
             for (const JsonValue& pattern : json_.at("exclude").elements()) {
@@ -124,6 +150,7 @@ class Expansion {
         }
         if (own.contains("scheme") || own.contains("method")) axes.erase("image");
         for (const auto& [key, values] : own) axes.insert_or_assign(key, values);
+        require_few_cells(axes, extra);
         for_each_assignment(axes, [&](const Assignment& assignment) { add(assignment); });
     }
 
@@ -264,6 +291,7 @@ class Expansion {
     }
 
     void push(Cell cell) {
+        require_folder_name(cell.name, matrix_.file);
         scene_order_.try_emplace(cell.scene, scene_order_.size());
         const auto [same, is_new] = by_name_.try_emplace(cell.name, cell.parameters_json());
         if (is_new) {

@@ -16,7 +16,6 @@
 #include "eval/equal_time.h"
 #include "eval/frame_jobs.h"
 #include "eval/progress.h"
-#include "eval/reference_error.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
 
@@ -25,20 +24,6 @@ namespace {
 
 std::string frame_key(const std::string& scene, const RenderSettings& settings) {
     return frame_json(scene, settings).dump();
-}
-
-/// Of the whole image, and of its regions.
-void mark_limited(nlohmann::json& row) {
-    if (!row.contains("metrics")) return;
-    const auto flag = [&](const nlohmann::json& metrics, const std::string& region) {
-        const auto is_limited =
-            limited_by_reference(metrics, part_of_error(row["reference_error"], region));
-        return is_limited ? nlohmann::json(*is_limited) : nlohmann::json();
-    };
-    row["limited_by_reference"] = flag(row["metrics"], "");
-    if (!row["metrics"].contains("regions")) return;
-    for (const auto& [name, region] : row["metrics"]["regions"].items())
-        row["limited_regions"][name] = flag(region, name);
 }
 
 double traced_samples(const RenderSettings& settings) {
@@ -305,16 +290,27 @@ class Runner {
 
     void run_job(const FrameJob& job) {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
-        CellInput input{&matrix_, nullptr, &reference_of(*job.cells.front())};
+        static const StoredReference none;
+        CellInput input{&matrix_, nullptr, &none};
+        try {
+            input.reference = &reference_of(*job.cells.front());
+        } catch (const WriteError&) {
+            throw;
+        } catch (const Error& error) {  // a file that is gone or broken: its cells alone fail
+            if (error.code() == ExitCode::interrupted) throw;
+            for (const Cell* cell : job.cells) add_row(*cell, none, failed_result(error.what()));
+            return;
+        }
         MethodRender traced;
         if (job.traces) {
             traced = trace(job);
             input.traced = &traced;
         }
-        for (const Cell* cell : job.cells) run_cell(*cell, input);
+        for (const Cell* cell : job.cells)
+            add_row(*cell, *input.reference, cell_result(*cell, input, directory_));
     }
 
-    void run_cell(const Cell& cell, const CellInput& input) {
+    void add_row(const Cell& cell, const StoredReference& reference, const nlohmann::json& result) {
         nlohmann::json row{{"cell", cell.name},
                            {"group", cell.group},
                            {"against", cell.against},
@@ -324,15 +320,15 @@ class Runner {
                            {"params", cell.parameters_json()},
                            {"samples_ratio", cell.samples_ratio()},
                            {"reference", reference_json(matrix_, cell)},
-                           {"reference_file", input.reference->file},
-                           {"reference_error", input.reference->error},
+                           {"reference_file", reference.file},
+                           {"reference_error", reference.error},
                            {"scene_hash", scene_hashes_.at(cell.scene)},
                            {"image_hash", image_hash(matrix_, cell)},
                            {"reference_hash", reference_hash(matrix_, cell)},
                            {"build", build_},
                            {"simd_width", simd_width_},
                            {"host", run_["versions"]["cpu"]}};
-        row.update(cell_result(cell, input, directory_));
+        row.update(result);
         mark_limited(row);
         directory_.append(row);
         rows_[cell.name] = row;
