@@ -125,6 +125,15 @@ nlohmann::json times_json(const RenderStatistics& s, double reconstruct_s, doubl
             {"total", s.scene_s + s.trace_s + reconstruct_s + write_s}};
 }
 
+nlohmann::json measure_stability(const Cell& cell, const Image& image, const CellInput& input,
+                                 const RunDirectory& directory) {
+    const StabilityInput measured{&input.traced->frame, &image, &input.reference->image,
+                                  input.shifted, input.matrix->stability->elasticity};
+    return stability_json(cell, measured, [&](float shift, const Image& shifted) {
+        save_image(shifted, directory.file_in("cells/" + cell.name, shifted_image_file(shift)));
+    });
+}
+
 nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirectory& directory) {
     const BuiltImage built = build_image(cell, input, directory);
     nlohmann::json row;
@@ -145,6 +154,8 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
     is_finite = is_finite && built.made.non_finite_pixels == 0;
     row["status"] = is_finite ? "ok" : "failed";
     if (!is_finite) row["reason"] = "non-finite pixels";
+    if (is_finite && input.matrix->stability && has_stability(cell))
+        row["stability"] = measure_stability(cell, built.made.image, input, directory);
     return row;
 }
 

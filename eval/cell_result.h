@@ -11,6 +11,7 @@
 #include "eval/matrix.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
+#include "eval/stability.h"
 
 namespace vecino {
 
@@ -22,6 +23,7 @@ struct CellInput {
     const Matrix* matrix = nullptr;
     const Render* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
+    std::span<const ShiftedView> shifted = {};  ///< as the matrix asks for under "stability"
 };
 
 /// Makes the cell's image, saves it in the run directory and returns "status", "metrics", "time_s"

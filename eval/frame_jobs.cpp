@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "eval/render_options.h"
+#include "eval/stability.h"
 
 namespace vecino {
 namespace {
@@ -65,6 +66,16 @@ std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan) {
     return jobs;
 }
 
+std::vector<Cell> views_of(const FrameJob& job, const Matrix& matrix) {
+    std::vector<Cell> views{*job.cells.front()};
+    if (!matrix.stability || !has_stability(views.front())) return views;
+    for (const float shift : matrix.stability->shifts) {
+        views.push_back(*job.cells.front());
+        views.back().settings.camera_shift += shift;
+    }
+    return views;
+}
+
 Planes planes_read_by(const Cell& cell) {
     Planes planes{Plane::radiance};
     if (cell.kind == CellKind::image) {
@@ -81,7 +92,7 @@ Planes planes_read_by(const Cell& cell) {
 nlohmann::json frame_json(const std::string& scene, const RenderSettings& settings) {
     nlohmann::json json{{"scene", scene}};
     for (const RenderOption& row : render_options())
-        json[std::string(row.name)] = row.get(settings);
+        if (is_told(row, settings)) json[std::string(row.name)] = row.get(settings);
     return json;
 }
 

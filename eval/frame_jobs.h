@@ -26,6 +26,9 @@ struct FrameJob {
 /// the planes that some scheme reads, and no other.
 std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan);
 
+/// A job's first cell as it is, then, where the matrix asks for it, as each moved camera sees it.
+std::vector<Cell> views_of(const FrameJob& job, const Matrix& matrix);
+
 /// The planes of a frame that a cell needs.
 Planes planes_read_by(const Cell& cell);
 

@@ -101,12 +101,13 @@ class Runner {
         result.samples = planned_samples(jobs);
         std::set<std::string> references;
         for (const FrameJob& job : jobs) {
-            const Cell& first = *job.cells.front();
-            if (job.traces) result.time_s += job.samples() / rate(first.scene, job.settings);
-            if (matrix_.reference_source != nullptr) continue;
-            const RenderSettings reference = reference_settings(matrix_, first);
-            if (!references.insert(frame_key(first.scene, reference)).second) continue;
-            result.time_s += traced_samples(reference) / rate(first.scene, reference);
+            for (const Cell& cell : views_of(job, matrix_)) {
+                if (job.traces) result.time_s += job.samples() / rate(cell.scene, job.settings);
+                if (matrix_.reference_source != nullptr) continue;
+                const RenderSettings reference = reference_settings(matrix_, cell);
+                if (!references.insert(frame_key(cell.scene, reference)).second) continue;
+                result.time_s += traced_samples(reference) / rate(cell.scene, reference);
+            }
         }
         return result;
     }
@@ -159,6 +160,8 @@ class Runner {
             return CellState::missing;
         for (const std::string& metric : matrix_.metrics)
             if (!row["metrics"].contains(metric)) return CellState::missing;
+        if (matrix_.stability && !holds_stability(row, cell, *matrix_.stability))
+            return CellState::missing;
         const bool same_program =
             row.value("build", nlohmann::json()) == build_ &&
             row.value("simd_width", nlohmann::json()) == simd_width_ &&
@@ -230,11 +233,13 @@ class Runner {
         double total = 0;
         std::set<std::string> references;
         for (const FrameJob& job : jobs) {
-            total += job.samples();
-            if (matrix_.reference_source != nullptr) continue;
-            const RenderSettings reference = reference_settings(matrix_, *job.cells.front());
-            const std::string key = frame_key(job.cells.front()->scene, reference);
-            if (references.insert(key).second) total += traced_samples(reference);
+            for (const Cell& cell : views_of(job, matrix_)) {
+                total += job.samples();
+                if (matrix_.reference_source != nullptr) continue;
+                const RenderSettings reference = reference_settings(matrix_, cell);
+                const std::string key = frame_key(cell.scene, reference);
+                if (references.insert(key).second) total += traced_samples(reference);
+            }
         }
         return total;
     }
@@ -292,6 +297,21 @@ class Runner {
         return result;
     }
 
+    std::vector<ShiftedView> shifted_views(const FrameJob& job) {
+        std::vector<ShiftedView> shifted;
+        const std::vector<Cell> cells = views_of(job, matrix_);
+        for (std::size_t i = 1; i < cells.size(); ++i) {
+            RenderSettings settings = job.settings;
+            settings.camera_shift = cells[i].settings.camera_shift;
+            const Image& reference = reference_of(cells[i]).image;
+            Render moved =
+                render_with_progress(cells[i].scene, settings, cells[i].name + ", camera moved");
+            shifted.push_back(
+                {matrix_.stability->shifts[i - 1], std::move(moved.frame), &reference});
+        }
+        return shifted;
+    }
+
     void run_job(const FrameJob& job) {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
         CellInput input{&matrix_, nullptr, &reference_of(*job.cells.front())};
@@ -300,6 +320,8 @@ class Runner {
             traced = trace(job);
             input.traced = &traced;
         }
+        const std::vector<ShiftedView> shifted = shifted_views(job);
+        input.shifted = shifted;
         for (const Cell* cell : job.cells) run_cell(*cell, input);
     }
 
