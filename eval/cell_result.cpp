@@ -8,6 +8,7 @@
 #include "core/timing.h"
 #include "eval/ceiling.h"
 #include "eval/external_command.h"
+#include "eval/frame_jobs.h"
 #include "eval/metrics_json.h"
 
 namespace vecino {
@@ -126,13 +127,29 @@ nlohmann::json times_json(const RenderStatistics& s, double reconstruct_s, doubl
             {"total", s.scene_s + s.trace_s + reconstruct_s + write_s}};
 }
 
+/// What the cell makes of a frame of its settings.
+Image image_of(const Cell& cell, const Frame& frame) {
+    if (cell.scheme == nullptr) return frame.radiance;
+    return reconstruct(frame, *cell.scheme, {cell.settings.size, cell.parameters, 0}).image;
+}
+
 nlohmann::json measure_stability(const Cell& cell, const Image& image, const CellInput& input,
                                  const RunDirectory& directory) {
-    const StabilityInput measured{&input.traced->frame, &image, &input.reference->image,
-                                  input.shifted, input.matrix->stability->elasticity};
-    return stability_json(cell, measured, [&](float shift, const Image& shifted) {
-        save_image(shifted, directory.file_in("cells/" + cell.name, shifted_image_file(shift)));
-    });
+    nlohmann::json json = shimmer_json(
+        input.shifted, {&image, &input.reference->image}, [&](const ShiftedView& view) {
+            Image shifted = image_of(cell, view.frame);
+            save_image(shifted,
+                       directory.file_in("cells/" + cell.name, shifted_image_file(view.shift)));
+            return shifted;
+        });
+    if (!input.matrix->stability->elasticity) return {{"shimmer", json}};
+    // A scheme takes the same frame in another way; a method has to render anew.
+    const auto make = [&](const Cell& other) {
+        return cell.kind == CellKind::method
+                   ? render_frame(other, *input.scene).render.frame.radiance
+                   : image_of(other, input.traced->render.frame);
+    };
+    return {{"shimmer", json}, {"elasticity", elasticity_json(cell, input.reference->image, make)}};
 }
 
 nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirectory& directory) {

@@ -22,6 +22,7 @@ struct CellInput {
     const Matrix* matrix = nullptr;
     const MethodRender* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
+    const Scene* scene = nullptr;               ///< null where no frame is read
     std::span<const ShiftedView> shifted = {};  ///< as the matrix asks for under "stability"
 };
 

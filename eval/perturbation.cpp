@@ -46,23 +46,37 @@ constexpr SchemeScale kSchemeScales[] = {
     {"min_normal_cosine", scale_normal_cosine},
 };
 
-PerturbedCell scaled(const Cell& cell, const SchemeScale& row, double factor) {
-    PerturbedCell result{0, cell};
-    result.value = row.scale(result.cell.parameters, factor);
-    return result;
+/// Both ends, by a function that multiplies the parameter and returns what it is then.
+template <class Scale>
+void add(const Cell& cell, std::string_view option, const Scale& scale,
+         std::vector<Perturbation>& result) {
+    const auto scaled = [&](double factor) {
+        PerturbedCell changed{0, cell};
+        changed.value = scale(changed.cell, factor);
+        return changed;
+    };
+    Perturbation both{std::string(option), scaled(kLow), scaled(kHigh)};
+    if (both.low.value > 0 && both.low.value < both.high.value) result.push_back(std::move(both));
 }
 
 }  // namespace
 
 std::vector<Perturbation> perturbations(const Cell& cell) {
     std::vector<Perturbation> result;
-    if (cell.scheme == nullptr) return result;
     for (const SchemeScale& row : kSchemeScales) {
-        if (!cell.scheme->reads(row.option)) continue;
-        Perturbation both{std::string(row.option), scaled(cell, row, kLow),
-                          scaled(cell, row, kHigh)};
-        if (both.low.value > 0 && both.low.value < both.high.value)
-            result.push_back(std::move(both));
+        if (cell.scheme == nullptr || !cell.scheme->reads(row.option)) continue;
+        add(
+            cell, row.option,
+            [&](Cell& c, double factor) { return row.scale(c.parameters, factor); }, result);
+    }
+    for (const MethodOption& row : method_options()) {
+        if (cell.render_method == nullptr || !cell.render_method->reads(row.name)) continue;
+        add(
+            cell, row.name,
+            [&](Cell& c, double factor) {
+                return scale_option(row, c.method_parameters, factor).value_or(0);
+            },
+            result);
     }
     return result;
 }

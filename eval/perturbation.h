@@ -4,9 +4,14 @@
 // method whose error hangs on them needs tuning by hand, scene by scene.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/error.h"
+#include "core/option_row.h"
 #include "eval/matrix.h"
 
 namespace vecino {
@@ -23,8 +28,31 @@ struct Perturbation {
 };
 
 /// Of every numeric parameter that the cell's method reads, but for those that cannot be changed
-/// so: an angle of 0. Windows are odd, so that the values are the nearest that there are; a minimal
-/// cosine is taken as the angle that it allows, in degrees.
+/// so: an angle of 0. Whole numbers change by 1 at least, windows by 2; a minimal cosine is taken
+/// as the angle that it allows, in degrees; at the end of its range a parameter stays where it is.
 std::vector<Perturbation> perturbations(const Cell& cell);
+
+/// Multiplies an option that is a number above 0; returns what it is then. None for others. Where
+/// the product is not allowed, the option stays as it is.
+template <class Parameters>
+std::optional<double> scale_option(const OptionRow<Parameters>& row, Parameters& parameters,
+                                   double factor) {
+    const nlohmann::json now = row.get(parameters);
+    if (!now.is_number() || !(now.get<double>() > 0)) return std::nullopt;
+    const auto value = now.get<double>();
+    nlohmann::json next = value * factor;
+    if (now.is_number_integer()) {
+        const double step = factor < 1 ? -1 : 1;
+        next = std::llround(factor < 1 ? std::min(value * factor, value + step)
+                                       : std::max(value * factor, value + step));
+    }
+    try {
+        Parameters changed = parameters;
+        row.set(changed, JsonValue(next, std::string(row.name)));
+        parameters = changed;
+    } catch (const Error&) {  // beyond the option's range
+    }
+    return row.get(parameters).template get<double>();
+}
 
 }  // namespace vecino

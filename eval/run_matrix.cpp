@@ -27,20 +27,6 @@ std::string frame_key(const std::string& scene, const RenderSettings& settings) 
     return frame_json(scene, settings).dump();
 }
 
-/// Of the whole image, and of its regions.
-void mark_limited(nlohmann::json& row) {
-    if (!row.contains("metrics")) return;
-    const auto flag = [&](const nlohmann::json& metrics, const std::string& region) {
-        const auto is_limited =
-            limited_by_reference(metrics, part_of_error(row["reference_error"], region));
-        return is_limited ? nlohmann::json(*is_limited) : nlohmann::json();
-    };
-    row["limited_by_reference"] = flag(row["metrics"], "");
-    if (!row["metrics"].contains("regions")) return;
-    for (const auto& [name, region] : row["metrics"]["regions"].items())
-        row["limited_regions"][name] = flag(region, name);
-}
-
 double traced_samples(const RenderSettings& settings) {
     return FrameJob{{}, settings}.samples();
 }
@@ -99,16 +85,8 @@ class Runner {
             for (const Cell* cell : job.cells) result.cells.push_back(cell->name);
         }
         result.samples = planned_samples(jobs);
-        std::set<std::string> references;
-        for (const FrameJob& job : jobs) {
-            for (const Cell& cell : views_of(job, matrix_)) {
-                if (job.traces) result.time_s += job.samples() / rate(cell.scene, job.settings);
-                if (matrix_.reference_source != nullptr) continue;
-                const RenderSettings reference = reference_settings(matrix_, cell);
-                if (!references.insert(frame_key(cell.scene, reference)).second) continue;
-                result.time_s += traced_samples(reference) / rate(cell.scene, reference);
-            }
-        }
+        for (const auto& [scene, settings] : renders_of(jobs, matrix_))
+            result.time_s += traced_samples(settings) / rate(scene, settings);
         return result;
     }
 
@@ -231,16 +209,8 @@ class Runner {
 
     double planned_samples(const std::vector<FrameJob>& jobs) const {
         double total = 0;
-        std::set<std::string> references;
-        for (const FrameJob& job : jobs) {
-            for (const Cell& cell : views_of(job, matrix_)) {
-                total += job.samples();
-                if (matrix_.reference_source != nullptr) continue;
-                const RenderSettings reference = reference_settings(matrix_, cell);
-                const std::string key = frame_key(cell.scene, reference);
-                if (references.insert(key).second) total += traced_samples(reference);
-            }
-        }
+        for (const PlannedRender& each : renders_of(jobs, matrix_))
+            total += traced_samples(each.settings);
         return total;
     }
 
@@ -284,18 +254,19 @@ class Runner {
         });
     }
 
+    MethodRender render_view(const Cell& view, const std::string& label) {
+        return with_progress(label, view.settings, [&](const Progress& progress) {
+            return render_frame(view, scenes_.at(view.scene), progress);
+        });
+    }
+
     MethodRender trace(const FrameJob& job) {
-        const Cell& first = *job.cells.front();
-        const Method& method =
-            first.kind == CellKind::method ? *first.render_method : all_methods().front();
-        const MethodRequest request{scenes_.at(first.scene), job.settings, first.method_parameters};
-        const auto trace_once = [&](const Progress& progress) {
-            return vecino::render(method, request, progress);
-        };
+        const Cell view = views_of(job, matrix_).front();
         std::vector<double> scene_s, trace_s, reconstruct_s;
         MethodRender result;
         for (int i = 0; i < matrix_.repeat; ++i) {
-            result = i == 0 ? with_progress(first.name, job.settings, trace_once) : trace_once({});
+            result =
+                i == 0 ? render_view(view, view.name) : render_frame(view, scenes_.at(view.scene));
             const RenderStatistics& s = result.render.statistics;
             scene_s.push_back(s.scene_s);
             trace_s.push_back(s.trace_s);
@@ -310,15 +281,12 @@ class Runner {
 
     std::vector<ShiftedView> shifted_views(const FrameJob& job) {
         std::vector<ShiftedView> shifted;
-        const std::vector<Cell> cells = views_of(job, matrix_);
-        for (std::size_t i = 1; i < cells.size(); ++i) {
-            RenderSettings settings = job.settings;
-            settings.camera_shift = cells[i].settings.camera_shift;
-            const Image& reference = reference_of(cells[i]).image;
-            Render moved =
-                render_with_progress(cells[i].scene, settings, cells[i].name + ", camera moved");
+        const std::vector<Cell> views = views_of(job, matrix_);
+        for (std::size_t i = 1; i < views.size(); ++i) {
+            const Image& reference = reference_of(views[i]).image;
+            MethodRender moved = render_view(views[i], views[i].name + ", camera moved");
             shifted.push_back(
-                {matrix_.stability->shifts[i - 1], std::move(moved.frame), &reference});
+                {matrix_.stability->shifts[i - 1], std::move(moved.render.frame), &reference});
         }
         return shifted;
     }
@@ -330,6 +298,7 @@ class Runner {
         if (job.traces) {
             traced = trace(job);
             input.traced = &traced;
+            input.scene = &scenes_.at(job.cells.front()->scene);
         }
         const std::vector<ShiftedView> shifted = shifted_views(job);
         input.shifted = shifted;

@@ -12,30 +12,16 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What the cell makes of a frame.
-Image image_of(const Cell& cell, const Frame& frame) {
-    if (cell.scheme == nullptr) return frame.radiance;
-    return reconstruct(frame, *cell.scheme, {cell.settings.size, cell.parameters, 0}).image;
-}
-
-Json measured(const PerturbedCell& perturbed, const StabilityInput& input) {
-    const Image image = image_of(perturbed.cell, *input.frame);
-    return {{"value", perturbed.value}, {"mse", display_mse(image, *input.reference)}};
-}
-
-Json elasticity_json(const Cell& cell, const StabilityInput& input) {
-    Json json = Json::object();
-    for (const Perturbation& both : perturbations(cell)) {
-        json[both.parameter] = {{"low", measured(both.low, input)},
-                                {"high", measured(both.high, input)}};
-    }
-    return json;
+Json measured(const PerturbedCell& perturbed, const Image& reference,
+              const std::function<Image(const Cell&)>& make) {
+    return {{"value", perturbed.value}, {"mse", display_mse(make(perturbed.cell), reference)}};
 }
 
 }  // namespace
 
 bool has_stability(const Cell& cell) {
-    return cell.kind == CellKind::path || cell.kind == CellKind::scheme;
+    return cell.kind == CellKind::path || cell.kind == CellKind::scheme ||
+           cell.kind == CellKind::method;
 }
 
 bool holds_stability(const Json& row, const Cell& cell, const StabilitySpec& spec) {
@@ -48,18 +34,24 @@ bool holds_stability(const Json& row, const Cell& cell, const StabilitySpec& spe
     return shifts == spec.shifts;
 }
 
-Json stability_json(const Cell& cell, const StabilityInput& input,
-                    const std::function<void(float, const Image&)>& keep) {
-    Json json{{"shimmer", Json::array()}};
-    for (const ShiftedView& view : input.shifted) {
-        const Image image = image_of(cell, view.frame);
-        json["shimmer"].push_back(
-            {{"shift", view.shift},
-             {"change", display_mse(image, *input.image)},
-             {"reference_change", display_mse(*view.reference, *input.reference)}});
-        keep(view.shift, image);
+Json shimmer_json(std::span<const ShiftedView> shifted, const StillView& still,
+                  const std::function<Image(const ShiftedView&)>& make) {
+    Json json = Json::array();
+    for (const ShiftedView& view : shifted) {
+        json.push_back({{"shift", view.shift},
+                        {"change", display_mse(make(view), *still.image)},
+                        {"reference_change", display_mse(*view.reference, *still.reference)}});
     }
-    if (input.elasticity) json["elasticity"] = elasticity_json(cell, input);
+    return json;
+}
+
+Json elasticity_json(const Cell& cell, const Image& reference,
+                     const std::function<Image(const Cell&)>& make) {
+    Json json = Json::object();
+    for (const Perturbation& both : perturbations(cell)) {
+        json[both.parameter] = {{"low", measured(both.low, reference, make)},
+                                {"high", measured(both.high, reference, make)}};
+    }
     return json;
 }
 

@@ -25,26 +25,27 @@ struct ShiftedView {
     const Image* reference = nullptr;
 };
 
-/// What a cell's stability is measured on.
-struct StabilityInput {
-    const Frame* frame = nullptr;      ///< that the cell reads
-    const Image* image = nullptr;      ///< that it made of it
-    const Image* reference = nullptr;  ///< of the camera that is not moved
-    std::span<const ShiftedView> shifted;
-    bool elasticity = true;
-};
-
 /// Whether stability is measured on a cell: it reads a frame of ours.
 bool has_stability(const Cell& cell);
 
 /// Whether a row holds all that the matrix asks for of its cell.
 bool holds_stability(const nlohmann::json& row, const Cell& cell, const StabilitySpec& spec);
 
-/// For results.jsonl: {"shimmer": [{"shift":, "change":, "reference_change":}, ...], "elasticity":
-/// {PARAMETER: {"low": {"value":, "mse":}, "high": {"value":, "mse":}}, ...}}. Changes are the mean
-/// squared differences between what both cameras see. Hands each image of a moved camera to keep.
-nlohmann::json stability_json(const Cell& cell, const StabilityInput& input,
-                              const std::function<void(float shift, const Image&)>& keep);
+/// A cell's image and its reference, of the camera that is not moved.
+struct StillView {
+    const Image* image = nullptr;
+    const Image* reference = nullptr;
+};
+
+/// For results.jsonl: [{"shift":, "change":, "reference_change":}, ...]. Changes are the mean
+/// squared differences between what both cameras see; make returns what the cell makes of a view.
+nlohmann::json shimmer_json(std::span<const ShiftedView> shifted, const StillView& still,
+                            const std::function<Image(const ShiftedView&)>& make);
+
+/// For results.jsonl: {PARAMETER: {"low": {"value":, "mse":}, "high": {"value":, "mse":}}, ...};
+/// make returns the image of a cell with another parameter.
+nlohmann::json elasticity_json(const Cell& cell, const Image& reference,
+                               const std::function<Image(const Cell&)>& make);
 
 /// The file that keeps a cell's image of a moved camera, in its folder: "shift_0.25.exr".
 std::string shifted_image_file(double shift);
