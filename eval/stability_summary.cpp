@@ -185,7 +185,9 @@ std::vector<StabilityInfo> stability_columns() {
         {"elasticity",
          "per cent of mean squared error (display values) for one per cent of the parameter, from "
          "half of it to one and a half: 0 needs no tuning"},
-        {"fallback", "traced pixels whose weights summed to 0, largest share of all seeds"},
+        {"fallback",
+         "traced pixels that kept their own colour, since their weights summed to 0 or nothing was "
+         "hit: largest share of all seeds"},
         {"dropped", "samples that were not finite, over all seeds"},
         {"non-finite", "pixels of which nothing finite was left, over all seeds"},
     };

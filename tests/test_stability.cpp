@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/color.h"
 #include "eval/perturbation.h"
 #include "eval/render_options.h"
 #include "eval/stability.h"

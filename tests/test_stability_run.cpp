@@ -75,11 +75,13 @@ TEST_CASE("the measured image is the same whether stability is asked for or not"
     with.run();
     TinyMatrix without;
     without.run();
-    const auto a = with.rows();
+    auto a = with.rows();
     for (const auto& [name, row] : without.rows()) {
         INFO(name);
         CHECK(a.at(name)["metrics"] == row["metrics"]);
-        CHECK(a.at(name)["params"] == row["params"]);
+        json params = row["params"];
+        params["scene"] = a.at(name)["params"]["scene"];  // which lies elsewhere
+        CHECK(a.at(name)["params"] == params);
         CHECK(a.at(name)["counts"] == row["counts"]);
     }
 }
