@@ -22,7 +22,7 @@ struct Column {
 
 constexpr const char* kNone = "–";
 
-/// "0", "0.52", "12.3", "1,234" without the comma: as many digits as matter.
+/// "0.52", "12.3", "1234": as many digits as matter.
 std::string ratio_text(double value) {
     const double size = std::abs(value);
     return number_text(value, size < 10 ? 2 : size < 100 ? 1 : 0);
@@ -44,25 +44,20 @@ std::string number_or_none(const std::optional<double>& value, int decimals) {
     return value ? number_text(*value, decimals) : kNone;
 }
 
-const Shimmer* shimmer_at(const GroupSummary& group, double shift) {
+/// "0.99 (1.05)": without noise, and with it.
+std::string shimmer_text(const GroupSummary& group, double shift) {
     const auto& all = group.stability->shimmer;
-    const auto found = std::ranges::find(all, shift, &Shimmer::shift);
-    return found == all.end() ? nullptr : &*found;
+    const auto at = std::ranges::find(all, shift, &Shimmer::shift);
+    if (at == all.end()) return kNone;
+    return (at->without_noise ? ratio_text(*at->without_noise) : kNone) + " (" +
+           ratio_text(at->with_noise) + ")" + (group.stability->is_limited ? " ≈R" : "");
 }
 
 void add_shimmer(double shift, std::vector<Column>& columns) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g px", shift);
-    columns.push_back({"shimmer", text, [shift](const GroupSummary& group) {
-                           const Shimmer* const at = shimmer_at(group, shift);
-                           if (at == nullptr || !at->without_noise) return std::string(kNone);
-                           return ratio_text(*at->without_noise) +
-                                  (group.stability->is_limited ? " ≈R" : "");
-                       }});
-    columns.push_back({"with noise", text, [shift](const GroupSummary& group) {
-                           const Shimmer* const at = shimmer_at(group, shift);
-                           return at == nullptr ? kNone : ratio_text(at->with_noise);
-                       }});
+    char text[48];
+    std::snprintf(text, sizeof text, "%g px (noise)", shift);
+    columns.push_back({"shimmer", text,
+                       [shift](const GroupSummary& group) { return shimmer_text(group, shift); }});
 }
 
 void add_elasticity(const std::string& parameter, std::vector<Column>& columns) {
@@ -111,6 +106,16 @@ std::vector<Column> columns_of(const ReportData& data) {
     return columns;
 }
 
+/// A name of many parts may go on in the next line after each.
+std::string breakable(const std::string& name) {
+    std::string html;
+    for (const char c : name) {
+        html += escaped(std::string(1, c));
+        if (c == '.' || c == '_') html += "<wbr>";
+    }
+    return html;
+}
+
 std::string head(const std::string& name, const std::string& unit) {
     return "<th scope=\"col\"><span class=\"name\">" + escaped(name) +
            "</span><span class=\"unit\">" + escaped(unit) + "</span></th>";
@@ -121,11 +126,11 @@ std::string row_html(const ReportData& data, const GroupSummary& group, bool is_
     return std::string(is_first ? "<tr class=\"first-of-scene\">" : "<tr>") + "<td>" + scene +
            "</td><th scope=\"row\" data-scene=\"" + scene + "\"><a href=\"#g" +
            std::to_string(index_of(data, group)) + "\">" +
-           marker_html(data.style_of(group.method)) + escaped(short_name(group)) + "</a></th>";
+           marker_html(data.style_of(group.method)) + breakable(short_name(group)) + "</a></th>";
 }
 
 std::string notes_html() {
-    std::string html = "<dl class=\"metrics\">\n";
+    std::string html = "<dl class=\"metrics stability-notes\">\n";
     for (const StabilityInfo& info : stability_columns()) {
         html += "<div><dt>" + escaped(info.name) + "</dt><dd>" + escaped(info.formula) +
                 "</dd></div>\n";
@@ -152,7 +157,7 @@ std::string stability_html(const ReportData& data) {
         "<section id=\"stability\">\n<h2>Stability</h2>\n<p class=\"note\">" +
         std::string(kIntroduction) +
         "</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Stability\">"
-        "<table>\n<thead><tr>" +
+        "<table class=\"stability\">\n<thead><tr>" +
         head("scene", "") + head("result", "");
     for (const Column& column : columns) html += head(column.name, column.unit);
     html += "</tr></thead><tbody>\n";

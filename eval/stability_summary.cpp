@@ -177,11 +177,12 @@ std::vector<StabilityInfo> stability_columns() {
         {"spread", "sample standard deviation of psnr_float_db over seeds, dB"},
         {"worst seed", "least psnr_float_db of a seed, dB"},
         {"shimmer",
-         "mean of D_i D_j over pairs of different seeds / mean of R^2, where D_i is what changes "
-         "between the images of seed i and R what changes between the references, in display "
-         "values, as the camera moves by this part of a pixel to the right and down: 1 is right, "
-         "more is change that the scene does not have, less is change that is lost"},
-        {"with noise", "the same with the noise that an eye sees: mean of D_i^2 / mean of R^2"},
+         "what changes in the image as the camera moves by this part of a pixel, right and down, "
+         "over what changes in the reference: mean of a b / mean of r^2 with a and b the changes "
+         "of two seeds' images and r that of the references, in display values; in brackets with "
+         "the noise that changes too, mean of a^2 / mean of r^2. 1 is right, more is change that "
+         "the scene does not have, less is change that is lost. ≈R: the references' noise could "
+         "be a tenth of r^2"},
         {"elasticity",
          "per cent of mean squared error (display values) for one per cent of the parameter, from "
          "half of it to one and a half: 0 needs no tuning"},
