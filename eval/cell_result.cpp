@@ -9,6 +9,7 @@
 #include "core/timing.h"
 #include "eval/ceiling.h"
 #include "eval/external_command.h"
+#include "eval/frame_jobs.h"
 #include "eval/metrics_json.h"
 #include "eval/reference_error.h"
 
@@ -138,6 +139,31 @@ nlohmann::json times_json(const RenderStatistics& s, double reconstruct_s, doubl
             {"total", s.scene_s + s.trace_s + reconstruct_s + write_s}};
 }
 
+/// What the cell makes of a frame of its settings.
+Image image_of(const Cell& cell, const Frame& frame) {
+    if (cell.scheme == nullptr) return frame.radiance;
+    return reconstruct(frame, *cell.scheme, {cell.settings.size, cell.parameters, 0}).image;
+}
+
+nlohmann::json measure_stability(const Cell& cell, const Image& image, const CellInput& input,
+                                 const RunDirectory& directory) {
+    nlohmann::json json = shimmer_json(
+        input.shifted, {&image, &input.reference->image}, [&](const ShiftedView& view) {
+            Image shifted = image_of(cell, view.frame);
+            save_image(shifted,
+                       directory.file_in("cells/" + cell.name, shifted_image_file(view.shift)));
+            return shifted;
+        });
+    if (!input.matrix->stability->elasticity) return {{"shimmer", json}};
+    // A scheme takes the same frame in another way; a method has to render anew.
+    const auto make = [&](const Cell& other) {
+        return cell.kind == CellKind::method
+                   ? render_frame(other, *input.scene).render.frame.radiance
+                   : image_of(other, input.traced->render.frame);
+    };
+    return {{"shimmer", json}, {"elasticity", elasticity_json(cell, input.reference->image, make)}};
+}
+
 nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirectory& directory) {
     const BuiltImage built = build_image(cell, input, directory);
     nlohmann::json row;
@@ -160,6 +186,8 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
     is_finite = is_finite && built.made.non_finite_pixels == 0;
     row["status"] = is_finite ? "ok" : "failed";
     if (!is_finite) row["reason"] = "non-finite pixels";
+    if (is_finite && input.matrix->stability && has_stability(cell))
+        row["stability"] = measure_stability(cell, built.made.image, input, directory);
     return row;
 }
 

@@ -10,6 +10,7 @@
 #include "eval/matrix.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
+#include "eval/stability.h"
 
 namespace vecino {
 
@@ -21,6 +22,8 @@ struct CellInput {
     const Matrix* matrix = nullptr;
     const MethodRender* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
+    const Scene* scene = nullptr;               ///< null where no frame is read
+    std::span<const ShiftedView> shifted = {};  ///< as the matrix asks for under "stability"
 };
 
 /// Of a cell that fails: status "failed" and a "reason".

@@ -70,13 +70,16 @@ Extent low_size(const RenderSettings& settings) {
 
 /// What decides the ceiling: all that decides the reference, and the blocks.
 bool decides_ceiling(std::string_view option) {
-    return option == "size" || option == "reduction" || option == "max_depth";
+    return option == "size" || option == "reduction" || option == "max_depth" ||
+           option == "camera_shift";
 }
 
 /// Of an image from elsewhere that rebuilds a frame of ours, all that decides the frame.
 bool reads(const Cell& cell, std::string_view option) {
     const ImageSource& image = *cell.image;
-    if (cell.is_against_render && (option == "size" || option == "max_depth")) return true;
+    const bool is_of_reference =
+        option == "size" || option == "max_depth" || option == "camera_shift";
+    if (cell.is_against_render && is_of_reference) return true;
     if (option == "size")
         return image.reads_frame() || image.reads("width") || image.reads("height");
     return image.reads_frame() || image.reads(option);
@@ -217,7 +220,7 @@ class Expansion {
         Cell ceiling = make_cell(assignment, CellKind::blocky_ceiling);
         ceiling.group = stem(ceiling.scene) + "." + ceiling.method();
         ceiling.group += ".f" + std::to_string(ceiling.settings.reduction);
-        append_render_slugs(ceiling.group, assignment, {"size", "max_depth"});
+        append_render_slugs(ceiling.group, assignment, {"size", "max_depth", "camera_shift"});
         ceiling.name = ceiling.group;
         push(std::move(ceiling));
     }
@@ -327,7 +330,8 @@ std::string Cell::method() const {
 nlohmann::json Cell::parameters_json() const {
     nlohmann::json json{{"scene", scene}, {"method", method()}};
     for (const RenderOption& row : render_options()) {
-        if (decides(*this, row.name)) json[std::string(row.name)] = row.get(settings);
+        if (decides(*this, row.name) && is_told(row, settings))
+            json[std::string(row.name)] = row.get(settings);
     }
     if (kind == CellKind::image) {
         json["image"] = image->json;
@@ -380,6 +384,7 @@ RenderSettings reference_settings(const Matrix& matrix, const Cell& cell) {
     RenderSettings settings = matrix.reference;
     settings.size = cell.settings.size;
     settings.max_depth = cell.settings.max_depth;
+    settings.camera_shift = cell.settings.camera_shift;
     settings.reduction = 1;
     return settings;
 }

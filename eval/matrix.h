@@ -7,12 +7,14 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/render.h"
 #include "eval/budget.h"
 #include "eval/image_source.h"
+#include "eval/stability_spec.h"
 #include "filters/methods.h"
 #include "filters/schemes.h"
 
@@ -63,7 +65,8 @@ struct Matrix {
     /// Held against instead, where the matrix names a file.
     std::shared_ptr<const ImageSource> reference_source;
     std::map<std::string, std::shared_ptr<const ImageSource>> images;  ///< by name
-    std::vector<std::string> metrics;  ///< of those on request, which to measure
+    std::vector<std::string> metrics;        ///< of those on request, which to measure
+    std::optional<StabilitySpec> stability;  ///< none: not asked for
     int repeat = 1;  ///< timings of a stage that takes under 0.5 s; the median counts
 };
 

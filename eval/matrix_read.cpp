@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::string_view kReferenceKeys[] = {"spp", "light_sampling", "sampler", "seed"};
-constexpr std::string_view kParts[] = {"axes",      "fixed",   "images",
-                                       "reference", "measure", "reproduction"};
+constexpr std::string_view kParts[] = {"axes",    "fixed",     "images",      "reference",
+                                       "measure", "stability", "reproduction"};
 
 RenderSettings read_reference(const JsonValue& json) {
     RenderSettings settings;
@@ -80,6 +80,15 @@ void read_measure(const JsonValue& json, Matrix& matrix) {
     }
 }
 
+/// A file shows what one camera sees.
+void read_stability(const JsonValue& json, Matrix& matrix) {
+    matrix.stability = read_stability(json);
+    if (matrix.reference_source == nullptr) return;
+    if (json.has("shifts") && !matrix.stability->shifts.empty())
+        json.at("shifts").fail("shifts of a camera whose reference is a file", "no shifts");
+    matrix.stability->shifts.clear();
+}
+
 void check_fixed(const JsonValue& json) {
     json.require_keys(cell_keys());
     for (const auto& [key, value] : json.members()) require_cell_value(key, value);
@@ -110,12 +119,13 @@ Matrix matrix_of(Json document, const std::string& file) {
     matrix.document = std::move(document);
     const JsonValue json(matrix.document, file);
     json.require_keys({"$schema", "extends", "name", "axes", "exclude", "include", "fixed",
-                       "images", "reference", "measure", "gates", "reproduction"});
+                       "images", "reference", "measure", "stability", "gates", "reproduction"});
     if (json.has("$schema")) (void)json.at("$schema").string();
     matrix.name = json.at("name").string();
     read_reference(json.at("reference"), matrix);
     if (json.has("images")) read_images(json.at("images"), matrix);
     if (json.has("measure")) read_measure(json.at("measure"), matrix);
+    if (json.has("stability")) read_stability(json.at("stability"), matrix);
     check_cells(json, matrix);
     (void)read_gate_classes(json);
     if (json.has("reproduction")) (void)read_reproduction(json);

@@ -9,6 +9,7 @@
 #include "eval/image_source.h"
 #include "eval/metrics.h"
 #include "eval/render_options.h"
+#include "eval/stability_spec.h"
 #include "filters/methods.h"
 #include "filters/schemes.h"
 
@@ -124,6 +125,8 @@ constexpr DescribedKey kMatrixKeys[] = {
     {"reference", optional, "the render, or the file, that cells are held against",
      reference_schema},
     {"measure", optional, "", [] { return object_schema(kMeasureKeys); }},
+    {"stability", optional, "measure what seeds, moved cameras and other parameters change",
+     stability_schema},
     {"gates", optional, "classes of cells and how much worse than a baseline each may be",
      gates_schema},
     {"reproduction", optional, "what a publication states, to be held against the results",

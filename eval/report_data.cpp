@@ -172,6 +172,10 @@ ReportData read_report_data(const std::string& directory) {
     data.run = read_run(directory + "/run.json");
     data.groups =
         summarise(data.rows, group_statistics(RunDirectory::open(data.directory), data.rows));
+    for (const auto& [name, stability] :
+         group_stability(RunDirectory::open(data.directory), data.rows)) {
+        std::ranges::find(data.groups, name, &GroupSummary::group)->stability = stability;
+    }
     read_reproduction_of(data);
     data.convergence = convergence(data.groups);
     for (const GroupSummary& group : data.groups) {

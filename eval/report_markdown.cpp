@@ -267,6 +267,26 @@ std::string results(const ReportData& data) {
     return text;
 }
 
+std::string stability(const ReportData& data) {
+    if (!has_stability(data)) return "";
+    std::string text = "\n## Stability\n\n" + stability_introduction() + "\n\n";
+    for (const StabilityInfo& info : stability_columns())
+        text += "- *" + std::string(info.name) + "*: " + plain(std::string(info.formula)) + "\n";
+    for (const std::string& scene : data.scenes) {
+        const StabilityTable table = stability_table(data, scene);
+        if (table.rows.empty()) continue;
+        Cells names;
+        for (const std::string& name : table.names) names.push_back(plain(name));
+        text += "\n### Stability on " + plain(scene) + "\n\n" + head(names);
+        for (std::size_t i = 0; i < table.rows.size(); ++i) {
+            Cells cells{code(table.results[i])};
+            cells.insert(cells.end(), table.rows[i].begin(), table.rows[i].end());
+            text += row(cells);
+        }
+    }
+    return text;
+}
+
 std::string references(const ReportData& data) {
     std::string text =
         "\n## References\n\nA reference's own error, from the difference of its two halves, and "
@@ -302,7 +322,7 @@ std::string failures(const ReportData& data) {
 std::string report_markdown(const ReportData& data) {
     const std::string name = data.run.value("name", "Results");
     return "# " + plain(name) + "\n\n" + facts(data) + reproduction(data) + results(data) +
-           references(data) + failures(data);
+           stability(data) + references(data) + failures(data);
 }
 
 }  // namespace vecino

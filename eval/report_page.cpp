@@ -142,6 +142,7 @@ std::string legend_html(const ReportData& data) {
 std::string contents_html(const ReportData& data) {
     std::string html;
     if (!data.convergence.empty()) html += "<a href=\"#convergence\">Convergence</a> ";
+    if (has_stability(data)) html += "<a href=\"#stability\">Stability</a> ";
     if (!data.reproduction) return html;
     const Reproduction& specification = data.reproduction->specification;
     html = "<a href=\"#reproduction\">Reproduction</a> " + html;
@@ -209,6 +210,7 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures) 
          {"facts", facts_html(data)},
          {"reproduction", reproduction_html(data)},
          {"convergence", convergence_html(data)},
+         {"stability", stability_html(data)},
          {"graphs", graphs_html(data)},
          {"figures", figures_html(data, pictures)},
          {"switches", chart_switches_html(data)},

@@ -84,15 +84,8 @@ class Runner {
             for (const Cell* cell : job.cells) result.cells.push_back(cell->name);
         }
         result.samples = planned_samples(jobs);
-        std::set<std::string> references;
-        for (const FrameJob& job : jobs) {
-            const Cell& first = *job.cells.front();
-            if (job.traces) result.time_s += job.samples() / rate(first.scene, job.settings);
-            if (matrix_.reference_source != nullptr) continue;
-            const RenderSettings reference = reference_settings(matrix_, first);
-            if (!references.insert(frame_key(first.scene, reference)).second) continue;
-            result.time_s += traced_samples(reference) / rate(first.scene, reference);
-        }
+        for (const auto& [scene, settings] : renders_of(jobs, matrix_))
+            result.time_s += traced_samples(settings) / rate(scene, settings);
         return result;
     }
 
@@ -144,6 +137,8 @@ class Runner {
             return CellState::missing;
         for (const std::string& metric : matrix_.metrics)
             if (!row["metrics"].contains(metric)) return CellState::missing;
+        if (matrix_.stability && !holds_stability(row, cell, *matrix_.stability))
+            return CellState::missing;
         const bool same_program =
             row.value("build", nlohmann::json()) == build_ &&
             row.value("simd_width", nlohmann::json()) == simd_width_ &&
@@ -213,14 +208,8 @@ class Runner {
 
     double planned_samples(const std::vector<FrameJob>& jobs) const {
         double total = 0;
-        std::set<std::string> references;
-        for (const FrameJob& job : jobs) {
-            total += job.samples();
-            if (matrix_.reference_source != nullptr) continue;
-            const RenderSettings reference = reference_settings(matrix_, *job.cells.front());
-            const std::string key = frame_key(job.cells.front()->scene, reference);
-            if (references.insert(key).second) total += traced_samples(reference);
-        }
+        for (const PlannedRender& each : renders_of(jobs, matrix_))
+            total += traced_samples(each.settings);
         return total;
     }
 
@@ -264,18 +253,19 @@ class Runner {
         });
     }
 
+    MethodRender render_view(const Cell& view, const std::string& label) {
+        return with_progress(label, view.settings, [&](const Progress& progress) {
+            return render_frame(view, scenes_.at(view.scene), progress);
+        });
+    }
+
     MethodRender trace(const FrameJob& job) {
-        const Cell& first = *job.cells.front();
-        const Method& method =
-            first.kind == CellKind::method ? *first.render_method : all_methods().front();
-        const MethodRequest request{scenes_.at(first.scene), job.settings, first.method_parameters};
-        const auto trace_once = [&](const Progress& progress) {
-            return vecino::render(method, request, progress);
-        };
+        const Cell view = views_of(job, matrix_).front();
         std::vector<double> scene_s, trace_s, reconstruct_s;
         MethodRender result;
         for (int i = 0; i < matrix_.repeat; ++i) {
-            result = i == 0 ? with_progress(first.name, job.settings, trace_once) : trace_once({});
+            result =
+                i == 0 ? render_view(view, view.name) : render_frame(view, scenes_.at(view.scene));
             const RenderStatistics& s = result.render.statistics;
             scene_s.push_back(s.scene_s);
             trace_s.push_back(s.trace_s);
@@ -286,6 +276,18 @@ class Runner {
         result.render.statistics.trace_s = median(trace_s);
         result.reconstruct_s = median(reconstruct_s);
         return result;
+    }
+
+    std::vector<ShiftedView> shifted_views(const FrameJob& job) {
+        std::vector<ShiftedView> shifted;
+        const std::vector<Cell> views = views_of(job, matrix_);
+        for (std::size_t i = 1; i < views.size(); ++i) {
+            const Image& reference = reference_of(views[i]).image;
+            MethodRender moved = render_view(views[i], views[i].name + ", camera moved");
+            shifted.push_back(
+                {matrix_.stability->shifts[i - 1], std::move(moved.render.frame), &reference});
+        }
+        return shifted;
     }
 
     void run_job(const FrameJob& job) {
@@ -305,7 +307,10 @@ class Runner {
         if (job.traces) {
             traced = trace(job);
             input.traced = &traced;
+            input.scene = &scenes_.at(job.cells.front()->scene);
         }
+        const std::vector<ShiftedView> shifted = shifted_views(job);
+        input.shifted = shifted;
         for (const Cell* cell : job.cells)
             add_row(*cell, *input.reference, cell_result(*cell, input, directory_));
     }

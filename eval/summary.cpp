@@ -256,31 +256,33 @@ Json summary_json(const GroupSummary& g) {
         const auto& value = g.region_psnr_float_db[region_index(info.region)];
         regions[std::string(info.name)] = estimate_json(value);
     }
-    return {{"regions", regions},
-            {"metrics", metrics_json(g)},
-            {"noise_db", estimate_json(g.noise_db)},
-            {"bias_db", estimate_json(g.bias_db)},
-            {"relmse_noise", estimate_json(g.relmse_noise)},
-            {"relmse_bias", estimate_json(g.relmse_bias)},
-            {"reference_db", g.reference_db ? Json(*g.reference_db) : Json()},
-            {"limited_by_reference", flag_json(g.is_limited)},
-            {"limited_regions", limited_regions_json(g)},
-            {"group", g.group},
-            {"scene", g.scene},
-            {"method", g.method},
-            {"params", g.params},
-            {"seeds", g.seeds},
-            {"failed", g.failed},
-            {"psnr_float_db", estimate_json(g.psnr_float_db)},
-            {"psnr_db", estimate_json(g.psnr_db)},
-            {"ssim", estimate_json(g.ssim)},
-            {"relmse", estimate_json(g.relmse)},
-            {"time_s", g.time_s},
-            {"reconstruct_s", g.reconstruct_s},
-            {"time_share", g.time_share},
-            {"samples_ratio", g.samples_ratio},
-            {"fallback_pixels", g.fallback_pixels},
-            {"cells", g.cells}};
+    Json json{{"regions", regions},
+              {"metrics", metrics_json(g)},
+              {"noise_db", estimate_json(g.noise_db)},
+              {"bias_db", estimate_json(g.bias_db)},
+              {"relmse_noise", estimate_json(g.relmse_noise)},
+              {"relmse_bias", estimate_json(g.relmse_bias)},
+              {"reference_db", g.reference_db ? Json(*g.reference_db) : Json()},
+              {"limited_by_reference", flag_json(g.is_limited)},
+              {"limited_regions", limited_regions_json(g)},
+              {"group", g.group},
+              {"scene", g.scene},
+              {"method", g.method},
+              {"params", g.params},
+              {"seeds", g.seeds},
+              {"failed", g.failed},
+              {"psnr_float_db", estimate_json(g.psnr_float_db)},
+              {"psnr_db", estimate_json(g.psnr_db)},
+              {"ssim", estimate_json(g.ssim)},
+              {"relmse", estimate_json(g.relmse)},
+              {"time_s", g.time_s},
+              {"reconstruct_s", g.reconstruct_s},
+              {"time_share", g.time_share},
+              {"samples_ratio", g.samples_ratio},
+              {"fallback_pixels", g.fallback_pixels},
+              {"cells", g.cells}};
+    if (g.stability) json["stability"] = group_stability_json(*g.stability);
+    return json;
 }
 
 std::string summary_table(const std::vector<GroupSummary>& groups) {

@@ -47,7 +47,7 @@ TEST_CASE("a cell's name has to do as that of a folder", "[matrix]") {
     CHECK(is_long.code() == ExitCode::usage);
     CHECK(std::string(is_long.what()) == "m.json: /axes: found the cell name " +
                                              std::string(60, 'a') +
-                                             "... of 203 bytes, allowed: at most 200");
+                                             "... of 208 bytes, allowed: at most 200");
     const Error control = error_of_cells(document_of(std::string("a\0b.json", 8)));
     CHECK(control.code() == ExitCode::usage);
     CHECK(std::string(control.what()) ==
