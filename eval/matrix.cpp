@@ -81,7 +81,8 @@ class Expansion {
             for (const auto& [key, value] : json_.at("fixed").members())
                 fixed_.insert_or_assign(key, value);
         }
-        const Axes axes = read_axes(json_.at("axes"));
+        Axes axes = read_axes(json_.at("axes"));
+        read_failures(axes);
         add_axes(axes);
         if (json_.has("include")) {
             for (const JsonValue& extra : json_.at("include").elements()) add_include(axes, extra);
@@ -94,6 +95,38 @@ class Expansion {
     }
 
   private:
+    /// What scenes need, and the scenes themselves where the axes name none.
+    void read_failures(Axes& axes) {
+        if (!json_.has("failures")) return;
+        const bool names_scenes = axes.contains("scene") || fixed_.contains("scene");
+        const auto failures = json_.at("failures").elements();
+        for (std::size_t i = 0; i < failures.size(); ++i) {
+            const JsonValue scene = failures[i].at("scene");
+            if (!names_scenes) axes["scene"].push_back(scene);
+            needs_.insert_or_assign(scene.string(), read_axes(failures[i].at("needs")));
+            injections_.insert_or_assign(scene.string(), matrix_.failures[i].inject);
+        }
+    }
+
+    /// What a scene needs takes the place of axes; one value alone is nothing to name a cell by.
+    void for_each_needed(const Axes& axes, const std::function<void(const Assignment&)>& visit) {
+        needed_.clear();
+        if (needs_.empty() || !axes.contains("scene")) return for_each_assignment(axes, visit);
+        for (const JsonValue& scene : axes.at("scene")) {
+            Axes own = axes;
+            own["scene"] = {scene};
+            needed_.clear();
+            if (const auto needs = needs_.find(scene.string()); needs != needs_.end()) {
+                for (const auto& [key, values] : needs->second) {
+                    own.erase(key);
+                    if (values.size() > 1) own[key] = values;
+                    if (values.size() == 1) needed_.insert_or_assign(key, values.front());
+                }
+            }
+            for_each_assignment(own, visit);
+        }
+    }
+
     void add_axes(const Axes& axes) {
         std::vector<Axes> excluded;
         if (json_.has("exclude")) {
@@ -101,7 +134,7 @@ class Expansion {
                 excluded.push_back(read_axes(pattern));
             }
         }
-        for_each_assignment(axes, [&](const Assignment& assignment) {
+        for_each_needed(axes, [&](const Assignment& assignment) {
             const auto fits = [&](const Axes& pattern) { return matches(assignment, pattern); };
             if (std::ranges::none_of(excluded, fits)) add(assignment);
         });
@@ -119,12 +152,13 @@ class Expansion {
         if (own.contains("scheme") || is_image) axes.erase("method");
         if (own.contains("scheme") || own.contains("method")) axes.erase("image");
         for (const auto& [key, values] : own) axes.insert_or_assign(key, values);
-        for_each_assignment(axes, [&](const Assignment& assignment) { add(assignment); });
+        for_each_needed(axes, [&](const Assignment& assignment) { add(assignment); });
     }
 
     std::optional<JsonValue> value(const Assignment& assignment, const std::string& key) const {
         if (const auto found = assignment.find(key); found != assignment.end())
             return found->second;
+        if (const auto found = needed_.find(key); found != needed_.end()) return found->second;
         if (const auto found = fixed_.find(key); found != fixed_.end()) return found->second;
         return std::nullopt;
     }
@@ -145,6 +179,8 @@ class Expansion {
         Cell cell = make_cell(assignment, CellKind::scheme);
         cell.scheme = &find_scheme(scheme->string());
         read_scheme_options(cell, assignment);
+        if (const auto scene = value(assignment, "scene"); injections_.contains(scene->string()))
+            cell.inject = injections_.at(scene->string());
         set_name(cell, assignment);
         cell.against = against;
         push(std::move(cell));
@@ -250,6 +286,9 @@ class Expansion {
     const Matrix& matrix_;
     JsonValue json_;
     Assignment fixed_;
+    Assignment needed_;                  ///< by the scene at hand
+    std::map<std::string, Axes> needs_;  ///< by scene, as the matrix names it
+    std::map<std::string, std::vector<Injection>> injections_;
     std::vector<Cell> cells_;
     std::map<std::string, nlohmann::json> by_name_;
     std::map<std::string, std::size_t> scene_order_;
@@ -285,6 +324,7 @@ nlohmann::json Cell::parameters_json() const {
         if (scheme->reads(row.name)) json[std::string(row.name)] = row.slug(parameters);
     }
     if (scheme->reads("window")) json["window"] = parameters.window;
+    for (const Injection& each : inject) json["inject"].push_back(injection_json(each));
     return json;
 }
 

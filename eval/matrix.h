@@ -12,6 +12,7 @@
 
 #include "core/render.h"
 #include "eval/budget.h"
+#include "eval/failure.h"
 #include "eval/image_source.h"
 #include "filters/schemes.h"
 
@@ -40,6 +41,7 @@ struct Cell {
         0;  ///< of path tracing at full resolution; settings.spp is what the budget gave
     SchemeParameters parameters;
     RenderSettings settings;  ///< of the frame that the cell reads
+    std::vector<Injection> inject;  ///< into that frame, before a scheme reads it
 
     /// The scheme's or the image source's name, "path" or "blocky_ceiling".
     [[nodiscard]] std::string method() const;
@@ -59,6 +61,7 @@ struct Matrix {
     std::shared_ptr<const ImageSource> reference_source;
     std::map<std::string, std::shared_ptr<const ImageSource>> images;  ///< by name
     std::vector<std::string> metrics;  ///< of those on request, which to measure
+    std::vector<FailureCase> failures;  ///< whose scenes are judged
     int repeat = 1;  ///< timings of a stage that takes under 0.5 s; the median counts
 };
 

@@ -99,7 +99,7 @@ std::string legend_remark(const std::string& method) {
 
 std::string style_text() {
     std::string text;
-    for (const auto& part : {kReportCss, kMatrixCss, kReproductionCss, kViewerCss}) text += part;
+    for (const auto& part : {kReportCss, kMatrixCss, kReproductionCss, kCatalogueCss, kViewerCss}) text += part;
     return text;
 }
 
@@ -141,6 +141,8 @@ std::string legend_html(const ReportData& data) {
 /// Links to the sections that not every run has.
 std::string contents_html(const ReportData& data) {
     std::string html;
+    if (!data.failures.cases.empty())
+        html += "<a href=\"#catalogue\">Where methods fail</a> ";
     if (!data.convergence.empty()) html += "<a href=\"#convergence\">Convergence</a> ";
     if (!data.reproduction) return html;
     const Reproduction& specification = data.reproduction->specification;
@@ -207,6 +209,7 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures) 
          {"picture_sources", pictures.has_linked ? "data: file: 'self'" : "data:"},
          {"script_sources", pictures.embedded ? "'unsafe-inline'" : "'unsafe-inline' file: 'self'"},
          {"facts", facts_html(data)},
+         {"catalogue", catalogue_html(data)},
          {"reproduction", reproduction_html(data)},
          {"convergence", convergence_html(data)},
          {"graphs", graphs_html(data)},
