@@ -64,8 +64,9 @@ ExitCode run_check(const CheckArguments& arguments) {
 
 void add_check_command(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<CheckArguments>();
-    CLI::App* const command =
-        app.add_subcommand("check", "hold a run against a baseline, or failures against what is expected: a gate for CI");
+    CLI::App* const command = app.add_subcommand(
+        "check",
+        "hold a run against a baseline, or failures against what is expected: a gate for CI");
     command->add_option("DIR", arguments->directory, "run directory")
         ->required()
         ->check(not_empty());

@@ -133,8 +133,7 @@ void read_also(FailureCase& failure, const JsonValue& json) {
 constexpr JsonKey<FailureCase> kKeys[] = {
     {"$schema", optional, "the JSON Schema of failures, for editors",
      [](FailureCase&, const JsonValue& json) { (void)json.string(); }, schema_of<kText>},
-    member_key<kText, &FailureCase::id>("id", required,
-                                        "of the hole; scenes of one hole share it"),
+    member_key<kText, &FailureCase::id>("id", required, "of the hole; scenes of one hole share it"),
     member_key<kText, &FailureCase::title>("title", required, "unique among failures"),
     member_key<kText, &FailureCase::mechanism>("mechanism", required, "why it happens"),
     member_key<kText, &FailureCase::scene>(
@@ -151,7 +150,9 @@ constexpr JsonKey<FailureCase> kKeys[] = {
      [](FailureCase& failure, const JsonValue& json) { failure.measure = read_measure(json); },
      measure_schema},
     {"also", optional, "numbers beside it, which are not judged", read_also,
-     [] { return array_schema(measure_schema(), {0, 0}); }},
+     [] {
+         return array_schema(measure_schema(), {0, 0});
+     }},
     member_key<kLimitKind, &FailureCase::pass_below>("pass_below", required,
                                                      "up to this value a method passes"),
     member_key<kLimitKind, &FailureCase::fails_above>("fails_above", required,
@@ -167,8 +168,7 @@ constexpr JsonKey<FailureCase> kKeys[] = {
      },
      [] { return one_or_several_schema(kText.schema()); }},
     {"expect", required, "what is expected; the first row that fits a result counts",
-     read_rows<Expectation, kExpectationKeys, &FailureCase::expect>,
-     rows_schema<kExpectationKeys>},
+     read_rows<Expectation, kExpectationKeys, &FailureCase::expect>, rows_schema<kExpectationKeys>},
 };
 
 // ---- Files ----------------------------------------------------------------------------------
@@ -194,8 +194,8 @@ Json load_failure(const fs::path& file, const fs::path& folder) {
     } else if (name.ends_with(kSuffix)) {
         scene /= name.substr(0, name.size() - std::string_view(kSuffix).size()) + ".json";
     } else {
-        json.fail("a file without \"scene\"", "\"scene\", or a name that ends in " +
-                                                  std::string(kSuffix));
+        json.fail("a file without \"scene\"",
+                  "\"scene\", or a name that ends in " + std::string(kSuffix));
     }
     document.erase("$schema");
     document["scene"] =
@@ -264,8 +264,7 @@ Json embedded_failures(const JsonValue& failures) {
 
 Json injection_json(const Injection& injection) {
     const auto is_same = [&](const Named<float>& each) {
-        return std::isnan(each.value) ? std::isnan(injection.value)
-                                      : each.value == injection.value;
+        return std::isnan(each.value) ? std::isnan(injection.value) : each.value == injection.value;
     };
     const auto* const name = std::ranges::find_if(kBadValues, is_same);
     return {{"u", injection.u}, {"v", injection.v}, {"value", name->name}};

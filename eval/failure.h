@@ -60,7 +60,7 @@ struct FailureCase {
     std::string limits_from;
     std::vector<Injection> inject;
     std::vector<std::string> not_for;  ///< methods that the measure says nothing of
-    std::vector<Expectation> expect;  ///< the first that fits counts
+    std::vector<Expectation> expect;   ///< the first that fits counts
 
     [[nodiscard]] FailureVerdict verdict(double value) const;
     /// Whether the measure means something for a result with these params (of results.jsonl).

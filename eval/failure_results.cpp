@@ -145,7 +145,7 @@ bool is_worse(const FailureResult* a, const FailureResult* b) {
 
 /// Parameters of results that differ within one scene and method, and are no size or seed.
 std::set<std::string> telling_parameters(const Failures& failures, const std::string& method) {
-    static const std::set<std::string> kApart{"scene", "method", "seed",      "reduction",
+    static const std::set<std::string> kApart{"scene",  "method", "seed",     "reduction",
                                               "window", "size",   "spp",      "spp_asked",
                                               "inject", "image",  "max_depth"};
     std::map<std::string, std::map<std::size_t, std::set<Json>>> values;
@@ -156,8 +156,8 @@ std::set<std::string> telling_parameters(const Failures& failures, const std::st
     }
     std::set<std::string> names;
     for (const auto& [key, by_case] : values) {
-        const bool differs = std::ranges::any_of(
-            by_case, [](const auto& entry) { return entry.second.size() > 1; });
+        const bool differs =
+            std::ranges::any_of(by_case, [](const auto& entry) { return entry.second.size() > 1; });
         if (differs) names.insert(key);
     }
     return names;
@@ -170,6 +170,7 @@ std::string plain_text(const Json& value) {
 }  // namespace
 
 bool FailureResult::is_unexpected() const {
+    if (!value) return true;
     return !expected.empty() && std::ranges::find(expected, verdict) == expected.end();
 }
 
@@ -230,7 +231,11 @@ std::string failure_number(const std::optional<double>& value) {
     if (size < 0.001 || size >= 10000)
         std::snprintf(text, sizeof text, "%.1e", *value);
     else
-        std::snprintf(text, sizeof text, "%.*f", size < 1 ? 3 : size < 10 ? 2 : size < 100 ? 1 : 0,
+        std::snprintf(text, sizeof text, "%.*f",
+                      size < 1     ? 3
+                      : size < 10  ? 2
+                      : size < 100 ? 1
+                                   : 0,
                       *value);
     return text;
 }

@@ -27,6 +27,7 @@ struct FailureResult {
     std::vector<FailureVerdict> expected;  ///< any of these; empty: nothing was expected
     std::string why;                       ///< that was expected; may be empty
 
+    /// Also where there is no value: nobody expects a measure that cannot be taken.
     [[nodiscard]] bool is_unexpected() const;
 };
 
@@ -46,7 +47,7 @@ Failures failure_results(const std::string& directory, const std::vector<nlohman
 
 /// One row of the chart: a method with those of its parameters that it has several of.
 struct FailureMethod {
-    std::string label;   ///< "distance3d, inverse"
+    std::string label;  ///< "distance3d, inverse"
     std::string method;
     std::vector<std::vector<const FailureResult*>> by_case;  ///< as Failures::cases; worst first
 };

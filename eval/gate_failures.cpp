@@ -23,9 +23,9 @@ std::string words(const std::vector<FailureVerdict>& verdicts) {
 
 Verdict verdict_of(const FailureResult& result, const FailureCase& failure) {
     Verdict verdict;
-    verdict.outcome = result.expected.empty()    ? Outcome::not_gated
-                      : result.is_unexpected() ? Outcome::fail
-                                               : Outcome::pass;
+    verdict.outcome = result.is_unexpected()    ? Outcome::fail
+                      : result.expected.empty() ? Outcome::not_gated
+                                                : Outcome::pass;
     verdict.rule = kRule;
     verdict.class_name = failure.id;
     verdict.group = result.group;

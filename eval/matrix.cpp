@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "eval/axes.h"
+#include "eval/failure_needs.h"
 #include "eval/render_options.h"
 
 namespace vecino {
@@ -64,6 +65,7 @@ bool decides(const Cell& cell, std::string_view option) {
         case CellKind::image:
             return reads(cell, option);
         case CellKind::path:
+        case CellKind::method:
             return option != "reduction";
         case CellKind::scheme:
             break;
@@ -74,7 +76,7 @@ bool decides(const Cell& cell, std::string_view option) {
 class Expansion {
   public:
     explicit Expansion(const Matrix& matrix)
-        : matrix_(matrix), json_(matrix.document, matrix.file) {}
+        : matrix_(matrix), json_(matrix.document, matrix.file), needs_(json_, matrix.failures) {}
 
     std::vector<Cell> run() {
         if (json_.has("fixed")) {
@@ -82,7 +84,8 @@ class Expansion {
                 fixed_.insert_or_assign(key, value);
         }
         Axes axes = read_axes(json_.at("axes"));
-        read_failures(axes);
+        const bool names_scenes = axes.contains("scene") || fixed_.contains("scene");
+        if (!names_scenes && !needs_.scenes().empty()) axes["scene"] = needs_.scenes();
         add_axes(axes);
         if (json_.has("include")) {
             for (const JsonValue& extra : json_.at("include").elements()) add_include(axes, extra);
@@ -95,36 +98,12 @@ class Expansion {
     }
 
   private:
-    /// What scenes need, and the scenes themselves where the axes name none.
-    void read_failures(Axes& axes) {
-        if (!json_.has("failures")) return;
-        const bool names_scenes = axes.contains("scene") || fixed_.contains("scene");
-        const auto failures = json_.at("failures").elements();
-        for (std::size_t i = 0; i < failures.size(); ++i) {
-            const JsonValue scene = failures[i].at("scene");
-            if (!names_scenes) axes["scene"].push_back(scene);
-            needs_.insert_or_assign(scene.string(), read_axes(failures[i].at("needs")));
-            injections_.insert_or_assign(scene.string(), matrix_.failures[i].inject);
-        }
-    }
-
-    /// What a scene needs takes the place of axes; one value alone is nothing to name a cell by.
+    /// Scene by scene, with what each needs.
     void for_each_needed(const Axes& axes, const std::function<void(const Assignment&)>& visit) {
         needed_.clear();
-        if (needs_.empty() || !axes.contains("scene")) return for_each_assignment(axes, visit);
-        for (const JsonValue& scene : axes.at("scene")) {
-            Axes own = axes;
-            own["scene"] = {scene};
-            needed_.clear();
-            if (const auto needs = needs_.find(scene.string()); needs != needs_.end()) {
-                for (const auto& [key, values] : needs->second) {
-                    own.erase(key);
-                    if (values.size() > 1) own[key] = values;
-                    if (values.size() == 1) needed_.insert_or_assign(key, values.front());
-                }
-            }
-            for_each_assignment(own, visit);
-        }
+        if (!axes.contains("scene")) return for_each_assignment(axes, visit);
+        for (const JsonValue& scene : axes.at("scene"))
+            for_each_assignment(needs_.apply(axes, scene, needed_), visit);
     }
 
     void add_axes(const Axes& axes) {
@@ -149,7 +128,11 @@ class Expansion {
                 return is_scheme_key(axis.first) && !(is_image && axis.first == "reduction");
             });
         }
-        if (own.contains("scheme") || is_image) axes.erase("method");
+        if (own.contains("scheme") || is_image) {
+            std::erase_if(axes, [](const auto& axis) {
+                return axis.first == "method" || is_method_key(axis.first);
+            });
+        }
         if (own.contains("scheme") || own.contains("method")) axes.erase("image");
         for (const auto& [key, values] : own) axes.insert_or_assign(key, values);
         for_each_needed(axes, [&](const Assignment& assignment) { add(assignment); });
@@ -170,17 +153,32 @@ class Expansion {
         path.against = path.group;
         const std::string against = path.group;
         push(std::move(path));
-        if (assignment.contains("method")) return;
-        const auto scheme = value(assignment, "scheme");
-        if (!scheme && value(assignment, "method")) return;
+        const auto scheme =
+            assignment.contains("method") ? std::nullopt : value(assignment, "scheme");
+        const auto method = value(assignment, "method");
+        if (!scheme && method)
+            return add_method(assignment, find_method(method->string()), against);
         if (!scheme)
             json_.at("axes").fail("no key \"scheme\"", "\"scheme\" among the axes or in fixed");
         push_ceiling(assignment);
         Cell cell = make_cell(assignment, CellKind::scheme);
         cell.scheme = &find_scheme(scheme->string());
         read_scheme_options(cell, assignment);
-        if (const auto scene = value(assignment, "scene"); injections_.contains(scene->string()))
-            cell.inject = injections_.at(scene->string());
+        set_name(cell, assignment);
+        cell.against = against;
+        push(std::move(cell));
+    }
+
+    void add_method(const Assignment& assignment, const Method& method,
+                    const std::string& against) {
+        if (&method == &all_methods().front()) return;  // path tracing is there already
+        Cell cell = make_cell(assignment, CellKind::method);
+        cell.render_method = &method;
+        for (const MethodOption& row : method_options()) {
+            if (!method.reads(row.name)) continue;
+            if (const auto given = value(assignment, std::string(row.name)))
+                row.set(cell.method_parameters, *given);
+        }
         set_name(cell, assignment);
         cell.against = against;
         push(std::move(cell));
@@ -218,8 +216,10 @@ class Expansion {
         cell.scene = (std::filesystem::path(folder_of(matrix_)) / scene->string())
                          .lexically_normal()
                          .string();
+        if (kind == CellKind::scheme) cell.inject = needs_.injections(scene->string());
         for (const RenderOption& row : render_options()) {
-            if (row.name == "reduction" && kind == CellKind::path) continue;
+            const bool is_whole = kind == CellKind::path || kind == CellKind::method;
+            if (row.name == "reduction" && is_whole) continue;
             if (const auto given = value(assignment, std::string(row.name)))
                 row.set(cell.settings, *given);
         }
@@ -266,6 +266,11 @@ class Expansion {
             }
             if (cell.budget != Budget::same_spp) name += "." + budget_name(cell.budget);
         }
+        for (const MethodOption& row : method_options()) {
+            if (cell.render_method == nullptr || !cell.render_method->reads(row.name)) continue;
+            if (assignment.contains(std::string(row.name)))
+                name += "." + row.slug(cell.method_parameters);
+        }
         append_render_slugs(name, assignment);
         cell.group = name;
         cell.name = name + ".s" + std::to_string(cell.settings.seed);
@@ -286,9 +291,8 @@ class Expansion {
     const Matrix& matrix_;
     JsonValue json_;
     Assignment fixed_;
-    Assignment needed_;                  ///< by the scene at hand
-    std::map<std::string, Axes> needs_;  ///< by scene, as the matrix names it
-    std::map<std::string, std::vector<Injection>> injections_;
+    FailureNeeds needs_;
+    Assignment needed_;  ///< by the scene at hand
     std::vector<Cell> cells_;
     std::map<std::string, nlohmann::json> by_name_;
     std::map<std::string, std::size_t> scene_order_;
@@ -303,6 +307,7 @@ std::string stem(const std::string& path) {
 std::string Cell::method() const {
     if (kind == CellKind::blocky_ceiling) return "blocky_ceiling";
     if (kind == CellKind::image) return image->name;
+    if (kind == CellKind::method) return std::string(render_method->name);
     return kind == CellKind::path ? "path" : std::string(scheme->name);
 }
 
@@ -319,6 +324,10 @@ nlohmann::json Cell::parameters_json() const {
     if (kind == CellKind::blocky_ceiling) return json;
     json["spp_asked"] = spp_asked;
     json["budget"] = budget_name(budget);
+    for (const MethodOption& row : method_options()) {
+        if (render_method != nullptr && render_method->reads(row.name))
+            json[std::string(row.name)] = row.get(method_parameters);
+    }
     if (scheme == nullptr) return json;
     for (const SchemeOption& row : scheme_options()) {
         if (scheme->reads(row.name)) json[std::string(row.name)] = row.slug(parameters);

@@ -68,8 +68,7 @@ std::string tally_text(const Failures& failures) {
     return number(failures.results.size()) + " results on " + number(failures.cases.size()) +
            " scenes: " + number(counts.verdicts[0]) + " pass, " + number(counts.verdicts[1]) +
            " degraded, " + number(counts.verdicts[2]) + " fail. " + number(counts.unexpected) +
-           " of them otherwise than expected; of " + number(counts.open) +
-           " nothing was expected.";
+           " of them otherwise than expected; of " + number(counts.open) + " nothing was expected.";
 }
 
 // ---- HTML -----------------------------------------------------------------------------------
@@ -97,16 +96,19 @@ std::string chart_cell(const FailureCase& failure, const Results& results) {
     std::string html = std::string(mark.mark) + " " + failure_number(worst.value);
     if (is_unexpected) html += " <b>!</b>";
     if (results.size() > 1) html += "<small>" + escaped(variant_text(worst.params)) + "</small>";
-    return "<td class=\"" + std::string(mark.css) + (is_unexpected ? " odd" : "") +
-           "\" title=\"" + escaped(title_text(worst, failure)) + "\">" + view_link(worst, html) +
-           "</td>";
+    return "<td class=\"" + std::string(mark.css) + (is_unexpected ? " odd" : "") + "\" title=\"" +
+           escaped(title_text(worst, failure)) + "\">" + view_link(worst, html) + "</td>";
 }
 
+/// Names may break where they are joined.
 std::string method_head(const std::string& label) {
     const std::size_t comma = label.find(", ");
-    std::string html = escaped(label.substr(0, comma));
-    if (comma != std::string::npos) html += "<small>" + escaped(label.substr(comma + 2)) + "</small>";
-    return "<th scope=\"col\">" + html + "</th>";
+    std::string name;
+    for (const char c : escaped(label.substr(0, comma)))
+        name += c == '_' ? "_<wbr>" : std::string(1, c);
+    if (comma != std::string::npos)
+        name += "<small>" + escaped(label.substr(comma + 2)) + "</small>";
+    return "<th scope=\"col\">" + name + "</th>";
 }
 
 std::string case_anchor(const FailureCase& failure) {
@@ -160,9 +162,10 @@ std::string case_html(const Failures& failures, std::size_t index) {
             fact("Reference", failure.reference);
     for (const ExactRadiance& exact : failure.exact)
         html += fact("Exact", "object " + std::to_string(exact.object) + ": " + exact.formula);
-    html += "</dl><div class=\"scroll\"><table class=\"plain\"><thead><tr><th scope=\"col\">result</th>"
-            "<th scope=\"col\">" +
-            escaped(failure.measure.signature->name) + "</th>";
+    html +=
+        "</dl><div class=\"scroll\"><table class=\"plain\"><thead><tr><th scope=\"col\">result</th>"
+        "<th scope=\"col\">" +
+        escaped(failure.measure.signature->name) + "</th>";
     for (const Measure& also : failure.also)
         html += "<th scope=\"col\">" + escaped(also.signature->name) + "</th>";
     html += "<th scope=\"col\">verdict</th><th scope=\"col\">expected</th></tr></thead><tbody>\n";
@@ -178,8 +181,7 @@ using namespace markdown;
 std::string markdown_cell(const Results& results) {
     if (results.empty()) return "–";
     const FailureResult& worst = *results.front();
-    std::string text =
-        std::string(mark_of(worst.verdict).mark) + " " + failure_number(worst.value);
+    std::string text = std::string(mark_of(worst.verdict).mark) + " " + failure_number(worst.value);
     if (std::ranges::any_of(results, [](const auto* each) { return each->is_unexpected(); }))
         text += " **!**";
     return text;
@@ -220,8 +222,7 @@ std::string catalogue_html(const ReportData& data) {
         "degraded, ✗ fails; <b>!</b> is otherwise than expected. A cell holds the worst of the "
         "method's factors and windows. <span class=\"js-only\">A click opens it in the "
         "viewer.</span></p>\n<p class=\"note\">" +
-        escaped(tally_text(failures)) + "</p>\n" +
-        chart_html(failures, failure_methods(failures)) +
+        escaped(tally_text(failures)) + "</p>\n" + chart_html(failures, failure_methods(failures)) +
         "<h3>What each failure is</h3>\n<div class=\"cases\">\n";
     for (std::size_t i = 0; i < failures.cases.size(); ++i) html += case_html(failures, i);
     return html + "</div>\n</section>\n";

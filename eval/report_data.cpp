@@ -153,8 +153,8 @@ void set_decimals(ReportData& data) {
 void read_failures_of(ReportData& data) {
     const Json config = data.run.value("config", Json::object());
     if (!config.is_object()) return;
-    data.failures = failure_results(data.directory, data.rows,
-                                    JsonValue(config, data.directory + "/run.json"));
+    data.failures =
+        failure_results(data.directory, data.rows, JsonValue(config, data.directory + "/run.json"));
     for (GroupSummary& group : data.groups) {
         const FailureResult* const result = data.failures.find(group.group);
         if (result == nullptr) continue;
@@ -210,8 +210,7 @@ void write_reproduction(const ReportData& data) {
 
 void write_failures(const ReportData& data) {
     if (data.failures.cases.empty()) return;
-    write_text_file(data.directory + "/failures.json",
-                    failures_json(data.failures).dump(1) + "\n");
+    write_text_file(data.directory + "/failures.json", failures_json(data.failures).dump(1) + "\n");
 }
 
 std::vector<std::size_t> variants_of(const ReportData& data, const GroupSummary& group) {

@@ -99,7 +99,8 @@ std::string legend_remark(const std::string& method) {
 
 std::string style_text() {
     std::string text;
-    for (const auto& part : {kReportCss, kMatrixCss, kReproductionCss, kCatalogueCss, kViewerCss}) text += part;
+    for (const auto& part : {kReportCss, kMatrixCss, kReproductionCss, kCatalogueCss, kViewerCss})
+        text += part;
     return text;
 }
 
@@ -140,13 +141,13 @@ std::string legend_html(const ReportData& data) {
 
 /// Links to the sections that not every run has.
 std::string contents_html(const ReportData& data) {
+    const std::string first =
+        data.failures.cases.empty() ? "" : "<a href=\"#catalogue\">Where methods fail</a> ";
     std::string html;
-    if (!data.failures.cases.empty())
-        html += "<a href=\"#catalogue\">Where methods fail</a> ";
     if (!data.convergence.empty()) html += "<a href=\"#convergence\">Convergence</a> ";
-    if (!data.reproduction) return html;
+    if (!data.reproduction) return first + html;
     const Reproduction& specification = data.reproduction->specification;
-    html = "<a href=\"#reproduction\">Reproduction</a> " + html;
+    html = first + "<a href=\"#reproduction\">Reproduction</a> " + html;
     if (!specification.graphs.empty()) html += "<a href=\"#graphs\">Graphs</a> ";
     if (!specification.figures.empty()) html += "<a href=\"#figures\">Figures</a> ";
     return html;

@@ -11,7 +11,8 @@ namespace vecino {
 
 void add_schema_command(CLI::App& app, Action& chosen) {
     auto what = std::make_shared<std::string>();
-    CLI::App* const command = app.add_subcommand("schema", "the JSON Schema of scenes, matrices or failures");
+    CLI::App* const command =
+        app.add_subcommand("schema", "the JSON Schema of scenes, matrices or failures");
     command->add_option("WHAT", *what, "scene, matrix, failure")
         ->required()
         ->check(CLI::IsMember({"scene", "matrix", "failure"}));

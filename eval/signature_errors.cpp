@@ -57,8 +57,7 @@ SignatureValues rms_error(const SignatureInput& input) {
             const glm::dvec3 e = at(image, p) - at(input.reference.radiance, p);
             squares += glm::dot(e, e);
         }
-        return std::sqrt(squares / (3.0 * static_cast<double>(pixels.size()))) /
-               contrast_of(input);
+        return std::sqrt(squares / (3.0 * static_cast<double>(pixels.size()))) / contrast_of(input);
     });
 }
 

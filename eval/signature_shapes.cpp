@@ -36,8 +36,8 @@ double brightness(const glm::dvec3& v) {
 /// Mean radiance of the pixels by their place along an axis.
 std::vector<glm::dvec3> profile(const Image& image, const std::vector<glm::ivec2>& pixels,
                                 Axis axis) {
-    std::vector<glm::dvec3> sums(static_cast<std::size_t>(
-        axis == Axis::x ? image.size().width : image.size().height));
+    std::vector<glm::dvec3> sums(
+        static_cast<std::size_t>(axis == Axis::x ? image.size().width : image.size().height));
     std::vector<double> counts(sums.size());
     for (const glm::ivec2 p : pixels) {
         const auto i = static_cast<std::size_t>(axis == Axis::x ? p.x : p.y);
@@ -56,8 +56,7 @@ double ramp_width(const std::vector<glm::dvec3>& profile, const glm::dvec3& begi
     const glm::dvec3 step = end - begin;
     double sum = 0;
     for (const glm::dvec3& value : profile) {
-        const double p =
-            std::clamp(glm::dot(value - begin, step) / glm::dot(step, step), 0.0, 1.0);
+        const double p = std::clamp(glm::dot(value - begin, step) / glm::dot(step, step), 0.0, 1.0);
         sum += p * (1 - p);
     }
     return 6 * sum;
@@ -158,8 +157,7 @@ SignatureValues centroid_shift(const SignatureInput& input) {
             around += at(input.reference.radiance, p) / static_cast<double>(beyond.size());
         const glm::dvec2 exact = centroid(input.reference.radiance, pixels, around);
         for (std::size_t i = 0; i < worst.size(); ++i) {
-            const glm::dvec2 shift =
-                glm::abs(centroid(input.images[i], pixels, around) - exact);
+            const glm::dvec2 shift = glm::abs(centroid(input.images[i], pixels, around) - exact);
             const double most = std::max(shift.x, shift.y);
             if (!(most <= worst[i])) worst[i] = most;
         }
@@ -183,12 +181,11 @@ SignatureValues seam_step(const SignatureInput& input) {
     return values;
 }
 
-SignatureValues facet_ratio(const SignatureInput& input) {
+SignatureValues facet_step(const SignatureInput& input) {
     const Frame& reference = input.reference;
-    const double cosine =
-        std::cos(input.parameters.min_angle_degrees * std::numbers::pi / 180.0);
-    const auto pairs = neighbours(pixels_of(input.parameters.where, reference),
-                                  reference.radiance.size());
+    const double cosine = std::cos(input.parameters.min_angle_degrees * std::numbers::pi / 180.0);
+    const auto pairs =
+        neighbours(pixels_of(input.parameters.where, reference), reference.radiance.size());
     const auto is_crease = [&](const PixelPair& pair) {
         const auto normal = [&](glm::ivec2 p) { return reference.normal_world(p.x, p.y); };
         return double{glm::dot(normal(pair.first), normal(pair.second))} < cosine;
@@ -199,7 +196,7 @@ SignatureValues facet_ratio(const SignatureInput& input) {
         for (const PixelPair& pair : pairs)
             (is_crease(pair) ? creases : flats).add(step2(image, reference, pair));
         if (creases.count == 0 || flats.count == 0) fail_without("creases, or none between them");
-        values.push_back(creases.rms() / flats.rms());
+        values.push_back(std::max(0.0, creases.rms() - flats.rms()) / input.parameters.contrast);
     }
     return values;
 }
@@ -286,8 +283,7 @@ SignatureValues fallbacks(const SignatureInput& input) {
     SignatureValues values;
     for (std::size_t i = 0; i < input.images.size(); ++i) {
         const Extent size = input.images[i].size();
-        const double blocks =
-            static_cast<double>(size.area()) / block_px(input.rows[i], size);
+        const double blocks = static_cast<double>(size.area()) / block_px(input.rows[i], size);
         values.push_back(count_of(input.rows[i], "fallback_pixels") / blocks);
     }
     return values;

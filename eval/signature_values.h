@@ -24,7 +24,7 @@ SignatureValues leaked_energy(const SignatureInput& input);
 SignatureValues edge_widening(const SignatureInput& input);
 SignatureValues centroid_shift(const SignatureInput& input);
 SignatureValues seam_step(const SignatureInput& input);
-SignatureValues facet_ratio(const SignatureInput& input);
+SignatureValues facet_step(const SignatureInput& input);
 SignatureValues outlier_area(const SignatureInput& input);
 
 // Seeds and counts.

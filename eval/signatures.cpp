@@ -50,8 +50,7 @@ constexpr JsonKey<Where> kWhereKeys[] = {
     {"on", optional, "objects of the scene, by index; -1: misses",
      [](Where& where, const JsonValue& json) { where.on = read_objects(json); }, objects_schema},
     {"near", optional, "objects that the pixels are close to",
-     [](Where& where, const JsonValue& json) { where.near = read_objects(json); },
-     objects_schema},
+     [](Where& where, const JsonValue& json) { where.near = read_objects(json); }, objects_schema},
     {"within_px", optional, "least and most distance to the nearest pixel of these",
      [](Where& where, const JsonValue& json) { where.within_px = read_reals<2, kPixels>(json); },
      [] {
@@ -74,19 +73,18 @@ constexpr JsonKey<Parameters> kKeys[] = {
      [] { return object_schema(kWhereKeys); }},
     member_key<kObject, &Parameters::far>("far", optional, "the object whose colour intrudes"),
     {"objects", optional, "those that are looked at one by one",
-     [](Parameters& parameters, const JsonValue& json) {
-         parameters.objects = read_objects(json);
-     },
+     [](Parameters& parameters, const JsonValue& json) { parameters.objects = read_objects(json); },
      objects_schema},
     member_key<kContrast, &Parameters::contrast>("contrast", optional,
                                                  "the radiance that counts as 1"),
     member_key<kThreshold, &Parameters::threshold>("threshold", optional,
                                                    "as a share of the contrast"),
     member_key<kPixels, &Parameters::reach_px>("reach_px", optional, "how far around an object"),
-    member_key<kAxis, &Parameters::across>("across", optional, "the direction that crosses an edge"),
+    member_key<kAxis, &Parameters::across>("across", optional,
+                                           "the direction that crosses an edge"),
     member_key<kRadiance, &Parameters::expected>("expected", optional, "the exact radiance"),
-    member_key<kAngle, &Parameters::min_angle_degrees>(
-        "min_angle_degrees", optional, "between normals of neighbouring pixels"),
+    member_key<kAngle, &Parameters::min_angle_degrees>("min_angle_degrees", optional,
+                                                       "between normals of neighbouring pixels"),
 };
 
 constexpr std::string_view kNone[] = {"where"};
@@ -96,7 +94,7 @@ constexpr std::string_view kWidthKeys[] = {"where", "objects", "contrast", "thre
 constexpr std::string_view kSwapKeys[] = {"where", "objects", "far"};
 constexpr std::string_view kEnergyKeys[] = {"where", "objects"};
 constexpr std::string_view kFlipKeys[] = {"where", "contrast", "threshold"};
-constexpr std::string_view kFacetKeys[] = {"where", "min_angle_degrees"};
+constexpr std::string_view kFacetKeys[] = {"where", "contrast", "min_angle_degrees"};
 constexpr std::string_view kShiftKeys[] = {"objects", "reach_px"};
 constexpr std::string_view kEdgeKeys[] = {"where", "across"};
 constexpr std::string_view kBlobKeys[] = {"contrast", "threshold"};
@@ -115,7 +113,7 @@ const Signature kSignatures[] = {
     {"edge_widening", "width of the ramp across an edge, less the reference's: 6 x sum of p(1-p), p the mean profile from 0 to 1", "px", kEdgeKeys, edge_widening},
     {"centroid_shift", "the largest shift of an object's centroid against the reference's, within reach_px around it", "px", kShiftKeys, centroid_shift},
     {"seam_step", "rms over neighbouring pixels of different objects of the step that is not in the reference / contrast", "of contrast", kContrastKeys, seam_step},
-    {"facet_ratio", "rms of the steps that are not in the reference where normals differ, over those where they do not", "ratio", kFacetKeys, facet_ratio},
+    {"facet_step", "rms of the steps that are not in the reference where normals differ, less that where they do not, at least 0 / contrast", "of contrast", kFacetKeys, facet_step},
     {"seed_flips", "share of pixels whose range over seeds exceeds threshold x contrast in some channel", "share", kFlipKeys, seed_flips},
     {"seed_noise", "standard deviation over seeds, rms over pixels / mean of r", "of mean", kNone, seed_noise},
     {"outlier_area", "mean area of connected pixels with x-r > threshold x contrast in some channel; 0 without any", "px", kBlobKeys, outlier_area},

@@ -22,8 +22,8 @@ namespace vecino {
 /// Which pixels a signature looks at; all that is given has to hold. Objects are those of the
 /// reference's first hits, by their index in the scene; -1 is a miss.
 struct Where {
-    std::vector<int> on;    ///< objects; empty: any
-    std::vector<int> near;  ///< objects; empty: no matter how far
+    std::vector<int> on;                      ///< objects; empty: any
+    std::vector<int> near;                    ///< objects; empty: no matter how far
     std::array<float, 2> within_px{0, 1e9f};  ///< least and most distance to a pixel of `near`
     std::array<float, 4> box{0, 0, 1, 1};     ///< u and v of two corners of the image
 };
@@ -33,14 +33,14 @@ enum class Axis { x, y };
 /// What signatures can be told. Each reads those that its row names.
 struct SignatureParameters {
     Where where;
-    int far = -1;                     ///< the object whose colour intrudes
-    std::vector<int> objects;         ///< those that are looked at one by one
-    double contrast = 1;              ///< the radiance that counts as 1, > 0
-    double threshold = 0.5;           ///< as a share of contrast
-    double reach_px = 4;              ///< how far around an object
-    Axis across = Axis::x;            ///< the direction that crosses an edge
-    glm::vec3 expected{0.0f};         ///< radiance
-    double min_angle_degrees = 5;     ///< between normals of neighbouring pixels
+    int far = -1;                  ///< the object whose colour intrudes
+    std::vector<int> objects;      ///< those that are looked at one by one
+    double contrast = 1;           ///< the radiance that counts as 1, > 0
+    double threshold = 0.5;        ///< as a share of contrast
+    double reach_px = 4;           ///< how far around an object
+    Axis across = Axis::x;         ///< the direction that crosses an edge
+    glm::vec3 expected{0.0f};      ///< radiance
+    double min_angle_degrees = 5;  ///< between normals of neighbouring pixels
 };
 
 /// What a group of results gives: the same cell for each of its seeds. All images have one size.
@@ -56,9 +56,9 @@ struct SignatureInput {
 using SignatureValues = std::vector<double>;
 
 struct Signature {
-    std::string_view name;     ///< "signature" in a measure
-    std::string_view summary;  ///< one line
-    std::string_view unit;     ///< "px", "share" or empty
+    std::string_view name;                   ///< "signature" in a measure
+    std::string_view summary;                ///< one line
+    std::string_view unit;                   ///< "px", "share" or empty
     std::span<const std::string_view> keys;  ///< of SignatureParameters, beside "where"
     SignatureValues (*values)(const SignatureInput&);
 };
@@ -76,8 +76,8 @@ Measure read_measure(const JsonValue& json);
 
 nlohmann::json measure_schema();
 
-/// Values by seed. Throws Error(usage) if the measure's pixels are not in the image, Error(mismatch)
-/// if the reference lacks the planes that tell objects apart.
+/// Values by seed. Throws Error(usage) if the measure's pixels are not in the image,
+/// Error(mismatch) if the reference lacks the planes that tell objects apart.
 SignatureValues measured(const Measure& measure, const SignatureInput& input);
 
 }  // namespace vecino

@@ -67,9 +67,8 @@ TEST_CASE("a faulty failure is refused: where, what was found, what is allowed",
     const TempDir dir;
     const json faulty = table("faulty_failures.json");
     dir.write("scene.json", table("faulty_scenes.json").at("sound").dump());
-    json matrix{{"name", "m"},
-                {"axes", {{"scheme", "nearest"}, {"seed", 1}}},
-                {"reference", {{"spp", 1}}}};
+    json matrix{
+        {"name", "m"}, {"axes", {{"scheme", "nearest"}, {"seed", 1}}}, {"reference", {{"spp", 1}}}};
     auto mistakes = write_faults(dir, faulty, "", "");
     for (Mistake& mistake : mistakes) {
         matrix["failures"] = {mistake.line};

@@ -66,8 +66,7 @@ TEST_CASE("every hole of the catalogue has a scene, a measure and limits", "[fai
     for (const FailureCase& failure : catalogue().failures) {
         CAPTURE(failure.scene);
         ids.insert(failure.id);
-        const Scene scene =
-            load_scene(VECINO_SOURCE_DIR "/configs/" + failure.scene);
+        const Scene scene = load_scene(VECINO_SOURCE_DIR "/configs/" + failure.scene);
         CHECK(scene.objects.size() >= 1);
         CHECK(scene.objects.size() <= 5);  // no more than the failure needs
         CHECK(failure.measure.signature != nullptr);
@@ -155,8 +154,8 @@ TEST_CASE("a small part of the catalogue holds its verdicts", "[failure]") {
     CHECK_FALSE(results.contains("f19_not_finite.path"));  // nothing is injected there
 
     const auto width = [&](const char* window) {
-        const std::string group = "f04_parallel_surfaces.distance3d_normal.f2." +
-                                  std::string(window) + ".proportional";
+        const std::string group =
+            "f04_parallel_surfaces.distance3d_normal.f2." + std::string(window) + ".proportional";
         return results.at(group)["value"].get<double>();
     };
     CHECK(width("w3") == Approx(2).margin(0.5));  // (window - 1) / 2 low-resolution pixels
@@ -184,8 +183,8 @@ TEST_CASE("an unexpected pass and an unexpected failure are told by the gate", "
     SmallCatalogue small;
     json document = failure_document("f02_ignored_centre");
     const bool passes = GENERATE(true, false);
-    document["expect"] = json::array({{{"methods", passes ? "near*" : "mean"},
-                                       {"verdict", passes ? "fails" : "pass"}}});
+    document["expect"] = json::array(
+        {{{"methods", passes ? "near*" : "mean"}, {"verdict", passes ? "fails" : "pass"}}});
     small.add("f02_ignored_centre", document);
     REQUIRE(small.run().code == 0);
     const Outcome check = run_in(small.dir, "check run --json");

@@ -65,7 +65,9 @@ Names keys_at(const std::string& place) {
 }  // namespace
 
 TEST_CASE("the schemas that editors read are those of the program", "[schema]") {
-    INFO("remake: vecino schema scene > scenes/scene.schema.json, the same for configs/matrix, scenes/failure");
+    INFO(
+        "remake: vecino schema scene > scenes/scene.schema.json, the same for configs/matrix, "
+        "scenes/failure");
     CHECK(json::parse(read_file(VECINO_SOURCE_DIR "/scenes/scene.schema.json")) == scene_schema());
     CHECK(json::parse(read_file(VECINO_SOURCE_DIR "/configs/matrix.schema.json")) ==
           matrix_schema());
