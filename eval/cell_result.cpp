@@ -90,8 +90,13 @@ BuiltImage build_image(const Cell& cell, const CellInput& input, const RunDirect
     switch (cell.kind) {
         case CellKind::image:
             return image_from_elsewhere(cell, input, directory);
-        case CellKind::scheme:
-            return reconstruct_timed(cell, input.traced->render.frame, input.matrix->repeat);
+        case CellKind::scheme: {
+            if (cell.inject.empty())
+                return reconstruct_timed(cell, input.traced->render.frame, input.matrix->repeat);
+            Frame low = input.traced->render.frame;
+            inject(cell.inject, low);
+            return reconstruct_timed(cell, low, input.matrix->repeat);
+        }
         case CellKind::blocky_ceiling: {
             const Extent low = reduced(cell.settings.size, cell.settings.reduction);
             return {{.image = blocky_ceiling(input.reference->image, low)}, 0};
@@ -183,7 +188,8 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
                      {"non_finite_pixels", built.made.non_finite_pixels}};
     if (input.traced != nullptr) row["threads"] = s.threads;
     if (cell.kind == CellKind::method) row["facts"] = input.traced->facts;
-    is_finite = is_finite && built.made.non_finite_pixels == 0;
+    // What injected samples leave is what their cell is there to show.
+    is_finite = is_finite && (built.made.non_finite_pixels == 0 || !cell.inject.empty());
     row["status"] = is_finite ? "ok" : "failed";
     if (!is_finite) row["reason"] = "non-finite pixels";
     if (is_finite && input.matrix->stability && has_stability(cell))

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "eval/axes.h"
+#include "eval/failure_needs.h"
 #include "eval/render_options.h"
 
 namespace vecino {
@@ -103,14 +104,16 @@ bool decides(const Cell& cell, std::string_view option) {
 class Expansion {
   public:
     explicit Expansion(const Matrix& matrix)
-        : matrix_(matrix), json_(matrix.document, matrix.file) {}
+        : matrix_(matrix), json_(matrix.document, matrix.file), needs_(json_, matrix.failures) {}
 
     std::vector<Cell> run() {
         if (json_.has("fixed")) {
             for (const auto& [key, value] : json_.at("fixed").members())
                 fixed_.insert_or_assign(key, value);
         }
-        const Axes axes = read_axes(json_.at("axes"));
+        Axes axes = read_axes(json_.at("axes"));
+        const bool names_scenes = axes.contains("scene") || fixed_.contains("scene");
+        if (!names_scenes && !needs_.scenes().empty()) axes["scene"] = needs_.scenes();
         add_axes(axes);
         if (json_.has("include")) {
             for (const JsonValue& extra : json_.at("include").elements()) add_include(axes, extra);
@@ -123,6 +126,14 @@ class Expansion {
     }
 
   private:
+    /// Scene by scene, with what each needs.
+    void for_each_needed(const Axes& axes, const std::function<void(const Assignment&)>& visit) {
+        needed_.clear();
+        if (!axes.contains("scene")) return for_each_assignment(axes, visit);
+        for (const JsonValue& scene : axes.at("scene"))
+            for_each_assignment(needs_.apply(axes, scene, needed_), visit);
+    }
+
     void add_axes(const Axes& axes) {
         require_few_cells(axes, json_.at("axes"));
         std::vector<Axes> excluded;
@@ -131,7 +142,7 @@ class Expansion {
                 excluded.push_back(read_axes(pattern));
             }
         }
-        for_each_assignment(axes, [&](const Assignment& assignment) {
+        for_each_needed(axes, [&](const Assignment& assignment) {
             const auto fits = [&](const Axes& pattern) { return matches(assignment, pattern); };
             if (std::ranges::none_of(excluded, fits)) add(assignment);
         });
@@ -154,12 +165,13 @@ class Expansion {
         if (own.contains("scheme") || own.contains("method")) axes.erase("image");
         for (const auto& [key, values] : own) axes.insert_or_assign(key, values);
         require_few_cells(axes, extra);
-        for_each_assignment(axes, [&](const Assignment& assignment) { add(assignment); });
+        for_each_needed(axes, [&](const Assignment& assignment) { add(assignment); });
     }
 
     std::optional<JsonValue> value(const Assignment& assignment, const std::string& key) const {
         if (const auto found = assignment.find(key); found != assignment.end())
             return found->second;
+        if (const auto found = needed_.find(key); found != needed_.end()) return found->second;
         if (const auto found = fixed_.find(key); found != fixed_.end()) return found->second;
         return std::nullopt;
     }
@@ -234,6 +246,7 @@ class Expansion {
         cell.scene = (std::filesystem::path(folder_of(matrix_)) / scene->string())
                          .lexically_normal()
                          .string();
+        if (kind == CellKind::scheme) cell.inject = needs_.injections(scene->string());
         for (const RenderOption& row : render_options()) {
             const bool is_whole = kind == CellKind::path || kind == CellKind::method;
             if (row.name == "reduction" && is_whole) continue;
@@ -309,6 +322,8 @@ class Expansion {
     const Matrix& matrix_;
     JsonValue json_;
     Assignment fixed_;
+    FailureNeeds needs_;
+    Assignment needed_;  ///< by the scene at hand
     std::vector<Cell> cells_;
     std::map<std::string, nlohmann::json> by_name_;
     std::map<std::string, std::size_t> scene_order_;
@@ -350,6 +365,7 @@ nlohmann::json Cell::parameters_json() const {
         if (scheme->reads(row.name)) json[std::string(row.name)] = row.slug(parameters);
     }
     if (scheme->reads("window")) json["window"] = parameters.window;
+    for (const Injection& each : inject) json["inject"].push_back(injection_json(each));
     return json;
 }
 

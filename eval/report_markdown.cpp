@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "eval/commands.h"
+#include "eval/markdown_text.h"
 #include "eval/reference_error.h"
 #include "eval/reference_quality.h"
 #include "eval/report_facts.h"
@@ -16,44 +17,7 @@ namespace vecino {
 namespace {
 
 using Json = nlohmann::json;
-using Cells = std::vector<std::string>;
-
-/// As text of a table: nothing in it is markup, and it stays in its cell.
-std::string plain(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '\n' || c == '\r') {
-            result += ' ';
-        } else {
-            if (std::string_view("\\`*_[]<>|#").find(c) != std::string_view::npos) result += '\\';
-            result += c;
-        }
-    }
-    return result;
-}
-
-/// As code in a table: GitHub takes a bar for the end of the cell even there.
-std::string code(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '|') result += '\\';
-        result += c == '\n' || c == '\r' ? ' ' : c;
-    }
-    const bool has_tick = text.find('`') != std::string::npos;
-    return has_tick ? "`` " + result + " ``" : "`" + result + "`";
-}
-
-std::string row(const Cells& cells) {
-    std::string line = "|";
-    for (const std::string& cell : cells) line += " " + cell + " |";
-    return line + "\n";
-}
-
-std::string head(const Cells& names) {
-    std::string text = row(names) + "|";
-    for (std::size_t i = 0; i < names.size(); ++i) text += "---|";
-    return text + "\n";
-}
+using namespace markdown;
 
 std::string significant(double value, int digits) {
     char text[64];
@@ -321,8 +285,8 @@ std::string failures(const ReportData& data) {
 
 std::string report_markdown(const ReportData& data) {
     const std::string name = data.run.value("name", "Results");
-    return "# " + plain(name) + "\n\n" + facts(data) + reproduction(data) + results(data) +
-           stability(data) + references(data) + failures(data);
+    return "# " + plain(name) + "\n\n" + facts(data) + catalogue_markdown(data) +
+           reproduction(data) + results(data) + stability(data) + references(data) + failures(data);
 }
 
 }  // namespace vecino

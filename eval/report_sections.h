@@ -18,6 +18,10 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures);
 /// The same results as Markdown tables. The same bytes for the same run directory.
 std::string report_markdown(const ReportData& data);
 
+/// Where methods fail: the chart of methods and failures. Empty without failures in the matrix.
+std::string catalogue_html(const ReportData& data);
+std::string catalogue_markdown(const ReportData& data);
+
 // About the run.
 std::string facts_html(const ReportData& data);
 std::string failures_html(const ReportData& data);
