@@ -11,7 +11,6 @@
 #include "eval/external_command.h"
 #include "eval/frame_jobs.h"
 #include "eval/metrics_json.h"
-#include "eval/reference_error.h"
 
 namespace vecino {
 namespace {
@@ -213,19 +212,6 @@ nlohmann::json cell_result(const Cell& cell, const CellInput& input,
         if (error.code() == ExitCode::interrupted) throw;
         return failed_result(error.what());
     }
-}
-
-void mark_limited(nlohmann::json& row) {
-    if (!row.contains("metrics")) return;
-    const auto flag = [&](const nlohmann::json& metrics, const std::string& region) {
-        const auto is_limited =
-            limited_by_reference(metrics, part_of_error(row["reference_error"], region));
-        return is_limited ? nlohmann::json(*is_limited) : nlohmann::json();
-    };
-    row["limited_by_reference"] = flag(row["metrics"], "");
-    if (!row["metrics"].contains("regions")) return;
-    for (const auto& [name, region] : row["metrics"]["regions"].items())
-        row["limited_regions"][name] = flag(region, name);
 }
 
 }  // namespace vecino

@@ -34,8 +34,4 @@ nlohmann::json failed_result(const std::string& reason);
 /// for the image, Error(interrupted).
 nlohmann::json cell_result(const Cell& cell, const CellInput& input, const RunDirectory& directory);
 
-/// Says in a row whether its error is close to that of its reference, of the whole image and of its
-/// regions.
-void mark_limited(nlohmann::json& row);
-
 }  // namespace vecino

@@ -16,6 +16,7 @@
 #include "eval/equal_time.h"
 #include "eval/frame_jobs.h"
 #include "eval/progress.h"
+#include "eval/reference_error.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
 
