@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/partial_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/render_task.h"
+
+namespace vecino {
+namespace {
+
+constexpr std::size_t kPixelsPerBlock = 1024;
+// Below this albedo, light cannot be told from what its surface sends on.
+constexpr double kLeastAlbedo = 1e-3;
+
+const RenderSettings& checked(const RenderSettings& settings) {
+    check_settings(settings);
+    return settings;
+}
+
+/// Planes asked for, and those that a partial frame works with.
+Planes planes_to_keep(const RenderSettings& settings) {
+    Planes planes = planes_to_make(settings);
+    planes.add({Plane::emission, Plane::direct, Plane::indirect, Plane::count});
+    return planes;
+}
+
+glm::vec3 albedo_of(const FirstHitRecord& hit) {
+    return {hit.albedo[0], hit.albedo[1], hit.albedo[2]};
+}
+
+}  // namespace
+
+// ---------------------------------------------------------------- blends
+
+void Blend::add(const Frame& from, std::size_t pixel, const FirstHitRecord& hit, double weight) {
+    weight_ += weight;
+    emission_ += weight * glm::dvec3(from.emission.values()[pixel]);
+    direct_ += weight * glm::dvec3(from.direct.values()[pixel]);
+    indirect_ += weight * glm::dvec3(from.indirect.values()[pixel]);
+    albedo_ += weight * glm::dvec3(albedo_of(hit));
+    if (!from.variance.empty())
+        variance_ += weight * weight * glm::dvec3(from.variance.values()[pixel]);
+}
+
+PixelValues Blend::values(std::optional<glm::vec3> albedo) const {
+    PixelValues values;
+    values.emission = glm::vec3(emission_ / weight_);
+    for (int c = 0; c < 3; ++c) {
+        const bool demodulates = albedo && albedo_[c] > kLeastAlbedo * weight_;
+        const double scale =
+            demodulates ? static_cast<double>((*albedo)[c]) / albedo_[c] : 1.0 / weight_;
+        values.direct[c] = static_cast<float>(direct_[c] * scale);
+        values.indirect[c] = static_cast<float>(indirect_[c] * scale);
+        values.variance[c] = static_cast<float>(variance_[c] * scale * scale);
+    }
+    return values;
+}
+
+double source_weight(Weighting weighting, double distance, double mean_distance) {
+    switch (weighting) {
+        case Weighting::proportional:
+            return distance;
+        case Weighting::inverse:
+            return 1.0 / (distance + 0.01 * mean_distance);
+        case Weighting::gaussian:
+            return std::exp(-distance * distance / (2.0 * mean_distance * mean_distance));
+    }
+    return 0;
+}
+
+// ---------------------------------------------------------------- the frame
+
+PartialFrame::PartialFrame(const MethodRequest& request, const Progress& progress)
+    : request_(request),
+      progress_(progress),
+      tracer_(request.scene, checked(request.settings), variance_of(request.settings)),
+      frame_(make_frame(tracer_.size(), planes_to_keep(request.settings))),
+      is_traced_(tracer_.size().area()) {
+    guide_.emplace(tracer_.centre_hits(stage(progress, 0, 0)), request.scene,
+                   GuideSettings{tracer_.size(), request.parameters.min_normal_cosine,
+                                 request.settings.threads});
+}
+
+bool PartialFrame::is_source(std::size_t pixel) const {
+    return is_traced(pixel) && !guide_->must_trace(pixel) &&
+           is_finite(frame_.radiance.values()[pixel]);
+}
+
+void PartialFrame::store_traced(PixelTrace& pixel) {
+    const PixelValues values = pixel.values();
+    store_values(values, pixel.at(), frame_);
+    is_traced_[pixel.index()] = 1;
+    if (!is_finite(values.radiance())) pixel.mark_non_finite();
+}
+
+void PartialFrame::trace(const PixelList& pixels, const ReaderOf& reader_of) {
+    if (pixels.empty()) return;
+    const auto share = [&](std::size_t count) {
+        return static_cast<double>(count) / static_cast<double>(area());
+    };
+    const auto trace_one = [&](PixelTrace& pixel) {
+        pixel.trace({0, request_.settings.spp},
+                    reader_of ? reader_of(pixel.index()) : BlockReader{});
+        store_traced(pixel);
+    };
+    const Progress progress = stage(progress_, share(traced_), share(traced_ + pixels.size()));
+    tracer_.for_each_pixel(pixels, trace_one, progress);
+    traced_ += pixels.size();
+    ++passes_;
+}
+
+void PartialFrame::trace_all(const std::function<SampleInterval(Pixel)>& samples_of) {
+    const auto trace_one = [&](PixelTrace& pixel) {
+        pixel.trace(samples_of(pixel.at()));
+        store_traced(pixel);
+    };
+    tracer_.for_each_pixel(trace_one, progress_);
+    traced_ = area();
+    ++passes_;
+}
+
+void PartialFrame::store(std::size_t pixel, const PixelValues& values) {
+    store_values(values, pixel_at(pixel, size()), frame_);
+}
+
+void PartialFrame::store(std::size_t pixel, const Blend& blend) {
+    store(pixel, blend.values(albedo_of(guide_->hit(pixel))));
+}
+
+void PartialFrame::for_each(const PixelList& pixels,
+                            const std::function<void(std::size_t)>& body) const {
+    for_each_block(pixels.size(), kPixelsPerBlock, request_.settings.threads,
+                   [&](BlockRange block) {
+                       for (std::size_t i = block.begin; i < block.end; ++i) body(pixels[i]);
+                   });
+}
+
+void PartialFrame::for_each(const std::function<void(std::size_t)>& body) const {
+    for_each_block(area(), kPixelsPerBlock, request_.settings.threads, [&](BlockRange block) {
+        for (std::size_t i = block.begin; i < block.end; ++i) body(i);
+    });
+}
+
+void PartialFrame::add_first_hits(Frame& frame) {
+    if (common(request_.settings.planes, kFirstHitPlanes) == Planes{}) return;
+    const auto store = [&](std::size_t pixel, const FirstHitRecord& hit) {
+        store_first_hit(hit, pixel_at(pixel, size()), frame);
+    };
+    if (request_.settings.first_hit == FirstHit::centre) {
+        for (std::size_t i = 0; i < area(); ++i) store(i, guide_->hit(i));
+    } else {
+        tracer_.first_sample_hits(store, stage(progress_, 1, 1));
+    }
+}
+
+MethodRender PartialFrame::finish(nlohmann::json facts) {
+    add_first_hits(frame_);
+    const Planes asked = planes_to_make(request_.settings);
+    for (const PlaneInfo& info : all_planes()) {
+        if (asked.has(info.plane)) continue;
+        std::visit([&](auto member) { frame_.*member = {}; }, info.member);
+    }
+    MethodRender result{.render = {std::move(frame_), tracer_.statistics()}};
+    const RenderStatistics& s = result.render.statistics;
+    const auto pixels = static_cast<double>(area());
+    facts["traced_share"] = static_cast<double>(traced_) / pixels;
+    facts["interpolated_share"] = static_cast<double>(area() - traced_) / pixels;
+    facts["passes"] = passes_;
+    facts["mean_spp"] = static_cast<double>(s.samples) / pixels;
+    result.facts = std::move(facts);
+    result.reconstruct_s = std::max(watch_.seconds() - s.scene_s - s.trace_s, 0.0);
+    return result;
+}
+
+}  // namespace vecino
