@@ -10,10 +10,10 @@
 #include "core/part_file.h"
 #include "core/render.h"
 #include "core/timing.h"
+#include "eval/cell_sources.h"
 #include "eval/commands.h"
 #include "eval/part_metadata.h"
 #include "eval/progress.h"
-#include "eval/reference_store.h"
 #include "eval/render_metadata.h"
 #include "eval/render_options.h"
 #include "filters/methods.h"
@@ -140,7 +140,7 @@ ExitCode render_image(const RenderArguments& arguments, const RenderSettings& se
 ExitCode render_samples(const RenderArguments& arguments, const RenderSettings& settings,
                         const Scene& scene) {
     const SampleInterval samples = interval_of(arguments.samples, settings.spp);
-    const std::string hash = text_hash(read_file(arguments.scene));
+    const std::string hash = scene_hash(arguments.scene, scene);
     const PartRender result = with_progress(scene, [&](const Progress& progress) {
         return render_part(scene, settings, samples, progress);
     });

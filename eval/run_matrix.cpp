@@ -137,12 +137,13 @@ class Runner {
     void load_scene_of(const Cell& cell) {
         if (traces_scene(matrix_, cell)) {
             if (scenes_.contains(cell.scene)) return;
-            scenes_.emplace(cell.scene, load_scene(cell.scene));
-        } else if (!cell.image->reads("scene_file")) {
+            const auto scene = scenes_.emplace(cell.scene, load_scene(cell.scene)).first;
+            scene_hashes_[cell.scene] = scene_hash(cell.scene, scene->second);
+        } else if (cell.image->reads("scene_file")) {
+            scene_hashes_.try_emplace(cell.scene, text_hash(read_file(cell.scene)));
+        } else {
             scene_hashes_.try_emplace(cell.scene);  // a name alone
-            return;
         }
-        scene_hashes_[cell.scene] = text_hash(read_file(cell.scene));
     }
 
     CellState state_of(const Cell& cell) const {
