@@ -95,7 +95,8 @@ PixelTracer::PixelTracer(const Scene& scene, const RenderSettings& settings, Var
 }
 
 void PixelTracer::for_each_pixel(const Body& body, const Progress& progress) {
-    run(size().area(), [](std::size_t i) { return i; }, body, progress);
+    run(
+        size().area(), [](std::size_t i) { return i; }, body, progress);
 }
 
 void PixelTracer::for_each_pixel(std::span<const std::uint32_t> pixels, const Body& body,
@@ -153,6 +154,7 @@ std::vector<FirstHitRecord> PixelTracer::centre_hits(const Progress& progress) {
 }
 
 void PixelTracer::first_sample_hits(
+    const std::function<int(Pixel)>& sample_of,
     const std::function<void(std::size_t, const FirstHitRecord&)>& store,
     const Progress& progress) {
     const Stopwatch watch;
@@ -164,8 +166,9 @@ void PixelTracer::first_sample_hits(
         SampleBlock light;
         FirstHitRecord hit;
         for (std::size_t i = block.begin; i < block.end; ++i) {
-            const auto [x, y] = pixel_at(i, size());
-            rays += kernel_.trace_samples(task, {x, y, 0, 1}, light, &hit);
+            const Pixel at = pixel_at(i, size());
+            const auto sample = static_cast<std::uint32_t>(sample_of(at));
+            rays += kernel_.trace_samples(task, {at.x, at.y, sample, 1}, light, &hit);
             store(i, hit);
         }
         report.advance(block.end - block.begin);

@@ -89,8 +89,9 @@ class PixelTracer {
 
     /// The first hits of rays through the centres of all pixels, row by row.
     std::vector<FirstHitRecord> centre_hits(const Progress& progress);
-    /// The first hits of first samples, of all pixels: without light, at the cost of one ray each.
-    void first_sample_hits(const std::function<void(std::size_t, const FirstHitRecord&)>& store,
+    /// The first hits of one sample of every pixel: without light, at the cost of one ray each.
+    void first_sample_hits(const std::function<int(Pixel)>& sample_of,
+                           const std::function<void(std::size_t, const FirstHitRecord&)>& store,
                            const Progress& progress);
 
     /// Of everything traced so far.

@@ -20,8 +20,9 @@ const RenderSettings& checked(const RenderSettings& settings) {
 }
 
 /// Planes asked for, and those that a partial frame works with.
-Planes planes_to_keep(const RenderSettings& settings) {
+Planes planes_to_keep(const RenderSettings& settings, VarianceOf variance_of) {
     Planes planes = planes_to_make(settings);
+    if (variance_of != VarianceOf::nothing) planes.add(Plane::variance);
     planes.add({Plane::emission, Plane::direct, Plane::indirect, Plane::count});
     return planes;
 }
@@ -73,51 +74,54 @@ double source_weight(Weighting weighting, double distance, double mean_distance)
 // ---------------------------------------------------------------- the frame
 
 PartialFrame::PartialFrame(const MethodRequest& request, const Progress& progress)
+    : PartialFrame(request, progress, variance_of(request.settings)) {}
+
+PartialFrame::PartialFrame(const MethodRequest& request, const Progress& progress,
+                           VarianceOf variance_of)
     : request_(request),
       progress_(progress),
-      tracer_(request.scene, checked(request.settings), variance_of(request.settings)),
-      frame_(make_frame(tracer_.size(), planes_to_keep(request.settings))),
-      is_traced_(tracer_.size().area()) {
+      tracer_(request.scene, checked(request.settings), variance_of),
+      frame_(make_frame(tracer_.size(), planes_to_keep(request.settings, variance_of))),
+      state_(tracer_.size().area()) {
     guide_.emplace(tracer_.centre_hits(stage(progress, 0, 0)), request.scene,
                    GuideSettings{tracer_.size(), request.parameters.min_normal_cosine,
                                  request.settings.threads});
 }
 
-bool PartialFrame::is_source(std::size_t pixel) const {
-    return is_traced(pixel) && !guide_->must_trace(pixel) &&
-           is_finite(frame_.radiance.values()[pixel]);
-}
-
-void PartialFrame::store_traced(PixelTrace& pixel) {
-    const PixelValues values = pixel.values();
+void PartialFrame::store_traced(PixelTrace& pixel, const PixelValues& values) {
     store_values(values, pixel.at(), frame_);
-    is_traced_[pixel.index()] = 1;
-    if (!is_finite(values.radiance())) pixel.mark_non_finite();
+    const bool finite = vecino::is_finite(values.radiance());
+    if (!finite && state_[pixel.index()] != kNonFinite) pixel.mark_non_finite();
+    state_[pixel.index()] = finite ? kFinite : kNonFinite;
 }
 
 void PartialFrame::trace(const PixelList& pixels, const ReaderOf& reader_of) {
-    if (pixels.empty()) return;
-    const auto share = [&](std::size_t count) {
-        return static_cast<double>(count) / static_cast<double>(area());
-    };
     const auto trace_one = [&](PixelTrace& pixel) {
         pixel.trace({0, request_.settings.spp},
                     reader_of ? reader_of(pixel.index()) : BlockReader{});
-        store_traced(pixel);
+        return pixel.values();
     };
-    const Progress progress = stage(progress_, share(traced_), share(traced_ + pixels.size()));
-    tracer_.for_each_pixel(pixels, trace_one, progress);
+    trace(pixels, trace_one,
+          stage(progress_, share(traced_, area()), share(traced_ + pixels.size(), area())));
     traced_ += pixels.size();
-    ++passes_;
 }
 
-void PartialFrame::trace_all(const std::function<SampleInterval(Pixel)>& samples_of) {
+void PartialFrame::trace_all(const std::function<void(PixelTrace&)>& body) {
     const auto trace_one = [&](PixelTrace& pixel) {
-        pixel.trace(samples_of(pixel.at()));
-        store_traced(pixel);
+        body(pixel);
+        store_traced(pixel, pixel.values());
     };
     tracer_.for_each_pixel(trace_one, progress_);
     traced_ = area();
+    ++passes_;
+}
+
+void PartialFrame::trace(const PixelList& pixels,
+                         const std::function<PixelValues(PixelTrace&)>& body,
+                         const Progress& progress) {
+    if (pixels.empty()) return;
+    const auto trace_one = [&](PixelTrace& pixel) { store_traced(pixel, body(pixel)); };
+    tracer_.for_each_pixel(pixels, trace_one, progress);
     ++passes_;
 }
 
@@ -127,6 +131,13 @@ void PartialFrame::store(std::size_t pixel, const PixelValues& values) {
 
 void PartialFrame::store(std::size_t pixel, const Blend& blend) {
     store(pixel, blend.values(albedo_of(guide_->hit(pixel))));
+}
+
+void PartialFrame::filter(std::size_t pixel, const Blend& blend) {
+    PixelValues values = blend.values(albedo_of(guide_->hit(pixel)));
+    values.emission = frame_.emission.values()[pixel];
+    values.samples = static_cast<std::uint64_t>(frame_.sample_count.values()[pixel]);
+    store(pixel, values);
 }
 
 void PartialFrame::for_each(const PixelList& pixels,
@@ -151,12 +162,14 @@ void PartialFrame::add_first_hits(Frame& frame) {
     if (request_.settings.first_hit == FirstHit::centre) {
         for (std::size_t i = 0; i < area(); ++i) store(i, guide_->hit(i));
     } else {
-        tracer_.first_sample_hits(store, stage(progress_, 1, 1));
+        tracer_.first_sample_hits(first_samples_, store, stage(progress_, 1, 1));
     }
 }
 
 MethodRender PartialFrame::finish(nlohmann::json facts) {
     add_first_hits(frame_);
+    const auto untraced = static_cast<std::size_t>(std::ranges::count(state_, kUntraced));
+    const std::size_t traced = area() - untraced;
     const Planes asked = planes_to_make(request_.settings);
     for (const PlaneInfo& info : all_planes()) {
         if (asked.has(info.plane)) continue;
@@ -164,11 +177,10 @@ MethodRender PartialFrame::finish(nlohmann::json facts) {
     }
     MethodRender result{.render = {std::move(frame_), tracer_.statistics()}};
     const RenderStatistics& s = result.render.statistics;
-    const auto pixels = static_cast<double>(area());
-    facts["traced_share"] = static_cast<double>(traced_) / pixels;
-    facts["interpolated_share"] = static_cast<double>(area() - traced_) / pixels;
+    facts["traced_share"] = share(traced, area());
+    facts["interpolated_share"] = share(area() - traced, area());
     facts["passes"] = passes_;
-    facts["mean_spp"] = static_cast<double>(s.samples) / pixels;
+    facts["mean_spp"] = share(s.samples, area());
     result.facts = std::move(facts);
     result.reconstruct_s = std::max(watch_.seconds() - s.scene_s - s.trace_s, 0.0);
     return result;

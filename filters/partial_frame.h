@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/pixel_tracer.h"
+#include "core/timing.h"
 #include "filters/methods.h"
 #include "filters/surface_guide.h"
 
@@ -36,6 +37,11 @@ class Blend {
     glm::dvec3 variance_{0.0};  ///< of weighted sums
 };
 
+/// Part of a whole, as a number for facts.
+inline double share(std::size_t part, std::size_t whole) {
+    return static_cast<double>(part) / static_cast<double>(whole);
+}
+
 /// The weight of a source from its distance, for Weighting; mean_distance is that of all sources.
 double source_weight(Weighting weighting, double distance, double mean_distance);
 
@@ -43,6 +49,8 @@ class PartialFrame {
   public:
     /// Traces the first hits of all pixel centres. Throws as render() does.
     PartialFrame(const MethodRequest& request, const Progress& progress);
+    /// The same, where the method needs the variance whether or not its plane was asked for.
+    PartialFrame(const MethodRequest& request, const Progress& progress, VarianceOf variance_of);
 
     [[nodiscard]] Extent size() const { return guide_->size(); }
     [[nodiscard]] std::size_t area() const { return size().area(); }
@@ -51,22 +59,31 @@ class PartialFrame {
     [[nodiscard]] const Frame& frame() const { return frame_; }
     [[nodiscard]] PixelTracer& tracer() { return tracer_; }
 
-    [[nodiscard]] bool is_traced(std::size_t pixel) const { return is_traced_[pixel] != 0; }
-    /// Traced, finite, and of one surface that neither shines nor mirrors: light for its neighbours
-    /// may come from it.
-    [[nodiscard]] bool is_source(std::size_t pixel) const;
+    [[nodiscard]] bool is_traced(std::size_t pixel) const { return state_[pixel] != kUntraced; }
+    [[nodiscard]] bool is_finite(std::size_t pixel) const { return state_[pixel] == kFinite; }
+    /// Traced, finite, and of one surface: the light of others of that surface may come from it.
+    [[nodiscard]] bool is_source(std::size_t pixel) const {
+        return is_finite(pixel) && !guide_->is_edge(pixel);
+    }
 
     /// Reader of the samples of a pixel, or none.
     using ReaderOf = std::function<BlockReader(std::size_t pixel)>;
     /// Traces pixels with all their samples. Each is traced once.
     void trace(const PixelList& pixels, const ReaderOf& reader_of = {});
-    /// Traces all pixels, each with samples of its own.
-    void trace_all(const std::function<SampleInterval(Pixel)>& samples_of);
+    /// Traces all pixels, each with the samples that body asks for.
+    void trace_all(const std::function<void(PixelTrace&)>& body);
+    /// Says which sample of a pixel is its first one, where that is not number 0.
+    void begin_samples_at(std::function<int(Pixel)> first) { first_samples_ = std::move(first); }
+    /// Traces pixels further: body asks for samples, and tells what all so far come to.
+    void trace(const PixelList& pixels, const std::function<PixelValues(PixelTrace&)>& body,
+               const Progress& progress);
 
     /// Gives a pixel that is not traced its values. Several threads may, for different pixels.
     void store(std::size_t pixel, const PixelValues& values);
     /// The same from a blend, for the pixel's own albedo.
     void store(std::size_t pixel, const Blend& blend);
+    /// Gives a traced pixel the light of a blend, for its own albedo; what it shines itself stays.
+    void filter(std::size_t pixel, const Blend& blend);
 
     /// Runs body for all pixels of a list, or of the frame, in parallel.
     void for_each(const PixelList& pixels, const std::function<void(std::size_t)>& body) const;
@@ -77,7 +94,9 @@ class PartialFrame {
     MethodRender finish(nlohmann::json facts);
 
   private:
-    void store_traced(PixelTrace& pixel);
+    static constexpr std::uint8_t kUntraced = 0, kFinite = 1, kNonFinite = 2;
+
+    void store_traced(PixelTrace& pixel, const PixelValues& values);
     void add_first_hits(Frame& frame);
 
     const MethodRequest& request_;
@@ -86,7 +105,8 @@ class PartialFrame {
     PixelTracer tracer_;
     std::optional<SurfaceGuide> guide_;
     Frame frame_;
-    std::vector<std::uint8_t> is_traced_;
+    std::vector<std::uint8_t> state_;
+    std::function<int(Pixel)> first_samples_ = [](Pixel) { return 0; };
     std::size_t traced_ = 0;
     int passes_ = 0;
 };

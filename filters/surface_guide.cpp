@@ -45,8 +45,8 @@ void SurfaceGuide::mark(std::size_t pixel, const Scene& scene) {
     const auto width = static_cast<std::size_t>(settings_.size.width);
     for (int v = std::max(y - 1, 0); v <= std::min(y + 1, settings_.size.height - 1); ++v) {
         for (int u = std::max(x - 1, 0); u <= std::min(x + 1, settings_.size.width - 1); ++u) {
-            const std::size_t other = static_cast<std::size_t>(v) * width +
-                                      static_cast<std::size_t>(u);
+            const std::size_t other =
+                static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
             if (is_same_surface(pixel, other)) continue;
             marks_[pixel] |= kEdge;
             return;
