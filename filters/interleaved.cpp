@@ -81,8 +81,10 @@ class Lattice {
         return sources;
     }
 
-    /// Returns false where nothing around it is like it.
+    /// Returns false where nothing around it is like it; so it is where it shows two surfaces.
     bool interpolate(std::size_t pixel) {
+        const bool by_surface = parameters_.kernel == LatticeKernel::surface;
+        if (by_surface && partial_.guide().is_edge(pixel)) return false;
         const std::vector<Source> sources = sources_of(pixel);
         double mean_distance = 0;
         for (const Source& source : sources)
@@ -94,7 +96,7 @@ class Lattice {
             blend.add(partial_.frame(), source.pixel, partial_.guide().hit(source.pixel), weight);
         }
         if (!(blend.weight() > 0) || !std::isfinite(blend.weight())) return false;
-        if (parameters_.kernel == LatticeKernel::surface) {
+        if (by_surface) {
             partial_.store(pixel, blend);
         } else {
             partial_.store(pixel, blend.values(std::nullopt));

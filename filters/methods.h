@@ -32,7 +32,7 @@ enum class LatticeMask {
 /// What an interpolated pixel of a lattice is made of.
 enum class LatticeKernel {
     distance3d_normal,  ///< radiance of traced pixels around it with a like normal: the thesis's
-    surface,            ///< light of those on the same surface, times its own albedo
+    surface,  ///< light of those on the same surface, times its own albedo; edges are traced
 };
 
 /// Which colour `reuse` takes of the traced hits nearby.

@@ -21,7 +21,8 @@ const Grid<float>& map_of(const MethodRender& render, std::string_view name) {
 /// A grey wall that fills the view, in even light.
 Scene plain_wall() {
     return scene_from(R"({
-        "camera": {"position": [0, 0, 2], "look_at": [0, 0, 0], "vertical_fov_degrees": 40},
+        "camera": {"position": [0, 0, 2], "look_at": [0, 0, 0], "up": [0, 1, 0],
+                   "vertical_fov_degrees": 40},
         "materials": {"grey": {"albedo": [0.5, 0.5, 0.5]}},
         "objects": [{"quad": [[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]],
                      "material": "grey"}],

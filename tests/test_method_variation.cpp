@@ -71,7 +71,8 @@ TEST_CASE("by the mean difference a pixel stops at once or never", "[methods]") 
     const auto never = std::ranges::count(counts, 256.0f);
     CHECK(at_once > 32);
     CHECK(never > 32);
-    CHECK(at_once + never > 0.95 * 32 * 32);
+    // In between are pixels that vary just so much as the bound allows.
+    CHECK(at_once + never > 32 * 32 * 9 / 10);
 }
 
 TEST_CASE("by the change of the mean pixels stop earlier than by its error", "[methods]") {
