@@ -49,10 +49,18 @@ Progress stage(const Progress& whole, double begin, double end) {
 
 // ---------------------------------------------------------------- one pixel
 
+PixelTrace::PixelTrace(const TraceTask& task, const TraceKernel& kernel, const PixelTracer& tracer)
+    : task_(task),
+      kernel_(kernel),
+      variance_of_(tracer.variance_of_),
+      keeps_means_(tracer.keeps_means_),
+      sums_(tracer.variance_of_) {}
+
 void PixelTrace::begin(std::size_t index) {
     index_ = index;
     at_ = pixel_at(index, {task_.width, task_.height});
     sums_.clear();
+    guide_sums_ = {};
     is_traced_ = false;
 }
 
@@ -61,7 +69,9 @@ void PixelTrace::trace(SampleInterval samples, const BlockReader& reader) {
     for (int sample = samples.begin; sample < samples.end;) {
         const int count = std::min(kBlockSamples, samples.end - sample);
         const SampleRange range{at_.x, at_.y, static_cast<std::uint32_t>(sample), count};
-        rays_ += kernel_.trace_samples(task_, range, block, is_traced_ ? nullptr : &first_hit_);
+        const PrimaryHits kept{is_traced_ ? nullptr : &first_hit_,
+                               keeps_means_ ? &guide_sums_ : nullptr};
+        rays_ += kernel_.trace_samples(task_, range, block, kept);
         is_traced_ = true;
         sums_.add(block, count);
         if (reader) reader(block, sample, count);
@@ -84,6 +94,7 @@ PixelValues PixelTrace::values() const {
 
 PixelTracer::PixelTracer(const Scene& scene, const RenderSettings& settings, VarianceOf variance_of)
     : variance_of_(variance_of),
+      keeps_means_(common(settings.planes, kMeanPlanes) != Planes{}),
       kernel_(kernel_for(settings.simd_width)),
       threads_(settings.threads) {
     const Stopwatch watch;
@@ -112,7 +123,7 @@ void PixelTracer::run(std::size_t count,
     ProgressReport report(progress, count);
     std::atomic<std::uint64_t> rays = 0, samples = 0, dropped = 0, non_finite = 0;
     for_each_block(count, kPixelsPerBlock, threads_, [&](BlockRange block) {
-        PixelTrace pixel(task_, kernel_, variance_of_);
+        PixelTrace pixel(task_, kernel_, *this);
         for (std::size_t i = block.begin; i < block.end; ++i) {
             pixel.begin(pixel_number(i));
             body(pixel);
@@ -153,9 +164,9 @@ std::vector<FirstHitRecord> PixelTracer::centre_hits(const Progress& progress) {
     return hits;
 }
 
-void PixelTracer::first_sample_hits(
-    const std::function<int(Pixel)>& sample_of,
-    const std::function<void(std::size_t, const FirstHitRecord&)>& store,
+void PixelTracer::primary_hits(
+    const std::function<SampleInterval(std::size_t)>& samples_of,
+    const std::function<void(std::size_t, const FirstHitRecord&, const GuideSums&)>& store,
     const Progress& progress) {
     const Stopwatch watch;
     TraceTask task = task_;
@@ -163,14 +174,13 @@ void PixelTracer::first_sample_hits(
     ProgressReport report(progress, size().area());
     std::atomic<std::uint64_t> rays = 0;
     for_each_block(size().area(), kPixelsPerBlock, threads_, [&](BlockRange block) {
-        SampleBlock light;
-        FirstHitRecord hit;
+        PixelTrace pixel(task, kernel_, *this);
         for (std::size_t i = block.begin; i < block.end; ++i) {
-            const Pixel at = pixel_at(i, size());
-            const auto sample = static_cast<std::uint32_t>(sample_of(at));
-            rays += kernel_.trace_samples(task, {at.x, at.y, sample, 1}, light, &hit);
-            store(i, hit);
+            pixel.begin(i);
+            pixel.trace(samples_of(i));
+            store(i, pixel.first_hit(), pixel.guide_sums());
         }
+        rays += pixel.rays_;
         report.advance(block.end - block.begin);
     });
     statistics_.rays += rays;

@@ -27,6 +27,8 @@ Progress stage(const Progress& whole, double begin, double end);
 /// is the block's first one.
 using BlockReader = std::function<void(const SampleBlock&, int first, int count)>;
 
+class PixelTracer;
+
 /// One pixel in the hands of one thread.
 class PixelTrace {
   public:
@@ -44,23 +46,26 @@ class PixelTrace {
     [[nodiscard]] PixelValues values() const;
     /// Of the first sample traced.
     [[nodiscard]] const FirstHitRecord& first_hit() const { return first_hit_; }
+    /// Of all samples so far, if a plane of means was asked for.
+    [[nodiscard]] const GuideSums& guide_sums() const { return guide_sums_; }
     /// Counts the pixel among those whose mean is beyond the range of float.
     void mark_non_finite() { ++non_finite_; }
 
   private:
     friend class PixelTracer;
-    PixelTrace(const TraceTask& task, const TraceKernel& kernel, VarianceOf variance_of)
-        : task_(task), kernel_(kernel), variance_of_(variance_of), sums_(variance_of) {}
+    PixelTrace(const TraceTask& task, const TraceKernel& kernel, const PixelTracer& tracer);
     void begin(std::size_t index);
     void end() { dropped_ += sums_.dropped(); }
 
     const TraceTask& task_;
     const TraceKernel& kernel_;
     VarianceOf variance_of_;
+    bool keeps_means_;
     std::size_t index_ = 0;
     Pixel at_{};
     PixelAccumulator sums_;
     FirstHitRecord first_hit_{};
+    GuideSums guide_sums_{};
     bool is_traced_ = false;
     // Of all pixels that this thread had in hand:
     std::uint64_t rays_ = 0, samples_ = 0, dropped_ = 0, non_finite_ = 0;
@@ -89,10 +94,12 @@ class PixelTracer {
 
     /// The first hits of rays through the centres of all pixels, row by row.
     std::vector<FirstHitRecord> centre_hits(const Progress& progress);
-    /// The first hits of one sample of every pixel: without light, at the cost of one ray each.
-    void first_sample_hits(const std::function<int(Pixel)>& sample_of,
-                           const std::function<void(std::size_t, const FirstHitRecord&)>& store,
-                           const Progress& progress);
+    /// Traces what samples of every pixel hit first, without light: one ray each. Each pixel has a
+    /// sample or more.
+    void primary_hits(
+        const std::function<SampleInterval(std::size_t)>& samples_of,
+        const std::function<void(std::size_t, const FirstHitRecord&, const GuideSums&)>& store,
+        const Progress& progress);
 
     /// Of everything traced so far.
     [[nodiscard]] const RenderStatistics& statistics() const { return statistics_; }
@@ -101,7 +108,10 @@ class PixelTracer {
     void run(std::size_t count, const std::function<std::size_t(std::size_t)>& pixel_number,
              const Body& body, const Progress& progress);
 
+    friend class PixelTrace;
+
     VarianceOf variance_of_;
+    bool keeps_means_;
     RenderStatistics statistics_;
     FlatScene flat_;
     TraceTask task_;

@@ -59,6 +59,7 @@ Render render(const Scene& scene, const RenderSettings& settings, const Progress
         pixel.trace({0, settings.spp});
         if (centres) pixel.trace_centre();
         store_first_hit(pixel.first_hit(), pixel.at(), result.frame);
+        store_means(pixel.guide_sums(), settings.spp, pixel.at(), result.frame);
         const PixelValues values = pixel.values();
         store_values(values, pixel.at(), result.frame);
         if (!is_finite(values.radiance())) pixel.mark_non_finite();
@@ -76,6 +77,11 @@ PartRender render_part(const Scene& scene, const RenderSettings& settings, Sampl
     if (scene.pattern != Pattern::none) {
         throw Error(ExitCode::usage, "samples: found the scene " + scene.name +
                                          ", which is a pattern, allowed: a scene of objects");
+    }
+    if (common(settings.planes, kMeanPlanes) != Planes{}) {
+        throw Error(ExitCode::usage,
+                    "planes: found albedo_mean or normal_mean with a part of the samples, allowed: "
+                    "with all of them");
     }
     const Extent size = reduced(settings.size, settings.reduction);
     const Planes planes = planes_to_make(settings);

@@ -154,16 +154,34 @@ void PartialFrame::for_each(const std::function<void(std::size_t)>& body) const 
     });
 }
 
+SampleInterval PartialFrame::samples_of(std::size_t pixel) const {
+    const int first = first_samples_(pixel_at(pixel, size()));
+    const auto count = static_cast<int>(frame_.sample_count.values()[pixel]);
+    return {first, first + (is_traced(pixel) ? std::max(count, 1) : request_.settings.spp)};
+}
+
 void PartialFrame::add_first_hits(Frame& frame) {
-    if (common(request_.settings.planes, kFirstHitPlanes) == Planes{}) return;
-    const auto store = [&](std::size_t pixel, const FirstHitRecord& hit) {
-        store_first_hit(hit, pixel_at(pixel, size()), frame);
-    };
-    if (request_.settings.first_hit == FirstHit::centre) {
-        for (std::size_t i = 0; i < area(); ++i) store(i, guide_->hit(i));
-    } else {
-        tracer_.first_sample_hits(first_samples_, store, stage(progress_, 1, 1));
+    const Planes asked = request_.settings.planes;
+    const bool has_hits = common(asked, kFirstHitPlanes) != Planes{};
+    const bool has_means = common(asked, kMeanPlanes) != Planes{};
+    const bool at_centres = request_.settings.first_hit == FirstHit::centre;
+    if (has_means || (has_hits && !at_centres)) {
+        const auto all_of = [&](std::size_t pixel) { return samples_of(pixel); };
+        const auto first_of = [&](std::size_t pixel) {
+            const int first = samples_of(pixel).begin;
+            return SampleInterval{first, first + 1};
+        };
+        const auto store = [&](std::size_t pixel, const FirstHitRecord& hit,
+                               const GuideSums& sums) {
+            const SampleInterval samples = samples_of(pixel);
+            store_first_hit(hit, pixel_at(pixel, size()), frame);
+            store_means(sums, samples.end - samples.begin, pixel_at(pixel, size()), frame);
+        };
+        tracer_.primary_hits(has_means ? SamplesOf(all_of) : SamplesOf(first_of), store,
+                             stage(progress_, 1, 1));
     }
+    for (std::size_t i = 0; at_centres && has_hits && i < area(); ++i)
+        store_first_hit(guide_->hit(i), pixel_at(i, size()), frame);
 }
 
 MethodRender PartialFrame::finish(nlohmann::json facts) {

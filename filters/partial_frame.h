@@ -94,9 +94,12 @@ class PartialFrame {
     MethodRender finish(nlohmann::json facts);
 
   private:
+    using SamplesOf = std::function<SampleInterval(std::size_t)>;
     static constexpr std::uint8_t kUntraced = 0, kFinite = 1, kNonFinite = 2;
 
     void store_traced(PixelTrace& pixel, const PixelValues& values);
+    /// Those of a traced pixel, or those that it would have had.
+    [[nodiscard]] SampleInterval samples_of(std::size_t pixel) const;
     void add_first_hits(Frame& frame);
 
     const MethodRequest& request_;
