@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace vecino {
 namespace {
@@ -61,6 +62,13 @@ const TraceKernel& kernel_for(int simd_width) {
     return *kernel;
 }
 
+RenderStatistics first_statistics(const RenderSettings& settings) {
+    RenderStatistics statistics;
+    statistics.threads = settings.threads > 0 ? settings.threads : default_thread_count();
+    statistics.simd_width = kernel_for(settings.simd_width).width;
+    return statistics;
+}
+
 TraceTask render_task(const Scene& scene, const FlatScene& flat, const RenderSettings& settings) {
     const float aspect =
         static_cast<float>(settings.size.width) / static_cast<float>(settings.size.height);
@@ -78,6 +86,7 @@ TraceTask render_task(const Scene& scene, const FlatScene& flat, const RenderSet
                                std::ranges::any_of(flat.lights, [&](const LightRecord& light) {
                                    return is_by_area(task, light.kind);
                                });
+    task.shares_samples = false;
     task.sobol = settings.sampler == Sampler::sobol;
     task.streams = 1;
     task.seed = settings.seed;

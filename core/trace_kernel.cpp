@@ -278,9 +278,10 @@ std::uint64_t trace_samples(const TraceTask& task, const SampleRange& range, Sam
                             const PrimaryHits& kept) {
     __builtin_memset(&block, 0, sizeof block);
     Tracer tracer(task);
-    const auto pixel =
+    const auto number =
         static_cast<std::uint32_t>(range.y) * static_cast<std::uint32_t>(task.width) +
         static_cast<std::uint32_t>(range.x);
+    const std::uint32_t pixel = task.shares_samples ? 0 : number;
     for (int at = 0; at < range.count; at += W) {
         const Int lane = lane_numbers() + at;
         const Mask active = lane < range.count;

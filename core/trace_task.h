@@ -121,6 +121,7 @@ struct TraceTask {
     /// At a path's last surface, whose bounce is traced for this alone, only near emitters.
     bool multiple_importance;
     bool sobol;
+    bool shares_samples;  ///< all pixels have the random numbers of the first one
     /// 1, or kStreams: Sobol samples are dealt to that many independent scramblings, sample i to i
     /// % streams. Their spread is the only sound estimate of the variance, at the price of about 2
     /// dB: each stratifies a quarter.

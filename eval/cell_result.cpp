@@ -186,7 +186,12 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
                      {"fallback_pixels", built.made.fallback_pixels},
                      {"non_finite_pixels", built.made.non_finite_pixels}};
     if (input.traced != nullptr) row["threads"] = s.threads;
-    if (cell.kind == CellKind::method) row["facts"] = input.traced->facts;
+    if (cell.kind == CellKind::method) {
+        row["facts"] = input.traced->facts;
+        // Which a method decides itself, and no parameter tells.
+        const double asked = double(cell.spp_asked) * double(cell.settings.size.area());
+        row["samples_ratio"] = static_cast<double>(s.samples) / asked;
+    }
     // What injected samples leave is what their cell is there to show.
     is_finite = is_finite && (built.made.non_finite_pixels == 0 || !cell.inject.empty());
     row["status"] = is_finite ? "ok" : "failed";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "filters/plans.h"
 
 namespace vecino {
 namespace {
@@ -14,9 +15,20 @@ MethodRender trace_paths(const MethodRequest& request, const Progress& progress)
     return {.render = render(request.scene, request.settings, progress)};
 }
 
+constexpr std::string_view kInterleavedOptions[] = {
+    "interleaving", "mask", "kernel", "step", "weighting", "min_normal_cosine"};
+constexpr std::string_view kAdaptiveOptions[] = {"coarse_step", "tolerance", "correction",
+                                                 "min_normal_cosine"};
+constexpr std::string_view kReuseOptions[] = {"radius", "reused", "weighting", "min_normal_cosine"};
+constexpr std::string_view kVariationOptions[] = {"variation_rule", "variation_bound", "min_spp"};
+
 // clang-format off
 const Method kMethods[] = {
     {"path", {}, "path tracing of every pixel", trace_paths},
+    {"interleaved", kInterleavedOptions, "pixels of a lattice, others interpolated; or parts of one set of samples", render_interleaved},
+    {"adaptive", kAdaptiveOptions, "pixels between traced ones of their surface are traced where these disagree", render_adaptive},
+    {"reuse", kReuseOptions, "a pixel takes the colour of a traced one whose hit is near in space", render_reuse},
+    {"variation", kVariationOptions, "a pixel is sampled until its samples vary little, spp at most", render_variation},
 };
 // clang-format on
 

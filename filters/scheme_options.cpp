@@ -3,12 +3,12 @@
 // The options of the schemes: the one table that the command line, matrices, cell names and help
 // follow from.
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/json_schema.h"
+#include "filters/option_names.h"
 #include "filters/schemes.h"
 
 namespace vecino {
@@ -17,11 +17,6 @@ namespace {
 constexpr IntegerKind kWindow{1, 9999};  // and odd
 constexpr std::string_view kWindowAllowed = "an odd integer from 1 to 9999";
 
-constexpr Named<Weighting> kWeightings[] = {
-    {"proportional", Weighting::proportional},
-    {"inverse", Weighting::inverse},
-    {"gaussian", Weighting::gaussian},
-};
 constexpr Named<Metric> kMetrics[] = {
     {"euclidean", Metric::euclidean},
     {"manhattan", Metric::manhattan},
@@ -51,14 +46,8 @@ std::string window_slug(const SchemeParameters& parameters) {
     return slug;
 }
 
-/// "c0.95": the fewest digits that read back as the same number.
 std::string cosine_slug(const SchemeParameters& parameters) {
-    char digits[32];
-    const auto [end, error] =
-        std::to_chars(std::begin(digits), std::end(digits), parameters.min_normal_cosine);
-    std::string slug = "c";
-    slug.append(digits, end);
-    return slug;
+    return number_slug("c", parameters.min_normal_cosine);
 }
 
 using Parameters = SchemeParameters;
