@@ -17,14 +17,21 @@ struct BuiltImage {
     Reconstruction made;
     double reconstruct_s = 0;
     double elsewhere_s = 0;  ///< tracing by another program
+    double guide_s = 0;
 };
 
-BuiltImage reconstruct_timed(const Cell& cell, const Frame& low, int repeat) {
+BuiltImage reconstruct_timed(const Cell& cell, const CellInput& input) {
     std::vector<double> times;
     BuiltImage built;
-    for (int i = 0; i < repeat; ++i) {
+    ReconstructionRequest request{cell.settings.size, cell.parameters, 0};
+    if (cell.scheme->uses_guide()) {
+        const TracedGuide& guide = input.guides->get(cell.parameters.guide_scale);
+        request.guide = &guide.frame;
+        built.guide_s = guide.trace_s;
+    }
+    for (int i = 0; i < input.matrix->repeat; ++i) {
         const Stopwatch watch;
-        built.made = reconstruct(low, *cell.scheme, {cell.settings.size, cell.parameters, 0});
+        built.made = reconstruct(input.traced->frame, *cell.scheme, request);
         times.push_back(watch.seconds());
         if (times.back() > kRepeatBelow_s) break;
     }
@@ -78,7 +85,7 @@ BuiltImage build_image(const Cell& cell, const CellInput& input, const RunDirect
         case CellKind::image:
             return image_from_elsewhere(cell, input, directory);
         case CellKind::scheme:
-            return reconstruct_timed(cell, input.traced->frame, input.matrix->repeat);
+            return reconstruct_timed(cell, input);
         case CellKind::blocky_ceiling: {
             const Extent low = reduced(cell.settings.size, cell.settings.reduction);
             return {{.image = blocky_ceiling(input.reference->image, low)}, 0};
@@ -117,12 +124,13 @@ double save(const Image& image, const Cell& cell, const RunDirectory& directory)
     return write_s;
 }
 
-nlohmann::json times_json(const RenderStatistics& s, double reconstruct_s, double write_s) {
+nlohmann::json times_json(const RenderStatistics& s, const BuiltImage& built, double write_s) {
     return {{"scene", s.scene_s},
             {"trace", s.trace_s},
-            {"reconstruct", reconstruct_s},
+            {"guide", built.guide_s},
+            {"reconstruct", built.reconstruct_s},
             {"write", write_s},
-            {"total", s.scene_s + s.trace_s + reconstruct_s + write_s}};
+            {"total", s.scene_s + s.trace_s + built.guide_s + built.reconstruct_s + write_s}};
 }
 
 nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirectory& directory) {
@@ -135,7 +143,7 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
     s.trace_s += built.elsewhere_s;
     // What took no time that is known did not take that of writing alone either.
     const bool is_timed = s.trace_s + built.reconstruct_s > 0;
-    row["time_s"] = times_json(s, built.reconstruct_s, is_timed ? write_s : 0);
+    row["time_s"] = times_json(s, built, is_timed ? write_s : 0);
     row["counts"] = {{"samples", s.samples},
                      {"rays", s.rays},
                      {"dropped_samples", s.dropped_samples + built.made.dropped_samples},

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/render.h"
+#include "eval/guide_store.h"
 #include "eval/matrix.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
@@ -22,6 +23,7 @@ struct CellInput {
     const Matrix* matrix = nullptr;
     const Render* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
+    GuideStore* guides = nullptr;  ///< null where no frame is read
 };
 
 /// Makes the cell's image, saves it in the run directory and returns "status", "metrics", "time_s"

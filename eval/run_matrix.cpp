@@ -5,6 +5,7 @@
 #include <ctime>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
@@ -293,11 +294,14 @@ class Runner {
 
     void run_job(const FrameJob& job) {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
-        CellInput input{&matrix_, nullptr, &reference_of(*job.cells.front())};
+        CellInput input{&matrix_, nullptr, &reference_of(*job.cells.front()), nullptr};
         Render traced;
+        std::optional<GuideStore> guides;
         if (job.traces) {
             traced = trace(job);
             input.traced = &traced;
+            guides.emplace(scenes_.at(job.cells.front()->scene), job.settings, matrix_.repeat);
+            input.guides = &*guides;
         }
         for (const Cell* cell : job.cells) run_cell(*cell, input);
     }
