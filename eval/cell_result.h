@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 
-#include "core/render.h"
 #include "eval/guide_store.h"
 #include "eval/matrix.h"
 #include "eval/reference_store.h"
@@ -21,7 +20,7 @@ constexpr double kRepeatBelow_s = 0.5;
 /// What the cells of a frame share.
 struct CellInput {
     const Matrix* matrix = nullptr;
-    const Render* traced = nullptr;  ///< times are medians; null where no frame is read
+    const MethodRender* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
     GuideStore* guides = nullptr;  ///< null where no frame is read
 };

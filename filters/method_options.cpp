@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The options of the render methods: the one table that the command line, matrices, cell names and
+// help follow from.
+#include <vector>
+
+#include "filters/methods.h"
+
+namespace vecino {
+
+std::span<const MethodOption> method_options() {
+    static const std::vector<MethodOption> rows = {};
+    return rows;
+}
+
+}  // namespace vecino
