@@ -149,9 +149,8 @@ PixelIrradiance GuidedFit::irradiance_of(int x, int y) const {
     constexpr double kLeast = 1e-6;
     const glm::dvec3& reflected = input_.reflected(x, y);
     if (!is_finite(reflected)) return {};
-    glm::dvec3 modulation(0.0);
-    for (const Surfel& q : input_.surfels().at(x, y))
-        modulation += static_cast<double>(q.coverage) * glm::dvec3(q.modulation);
+    const glm::dvec3 modulation =
+        mean_over(input_.surfels().at(x, y), [](const Surfel& q) { return q.modulation; });
     PixelIrradiance result;
     for (int c = 0; c < 3; ++c)
         result.value[c] = modulation[c] > kLeast ? reflected[c] / modulation[c] : 0.0;
@@ -180,7 +179,8 @@ void GuidedFit::collect(const Surfel& centre, int x, int y, std::vector<Sample>&
             const double near =
                 screen_weight(u - x, radius_ + 1.0) * screen_weight(v - y, radius_ + 1.0);
             for (const Surfel& q : input_.surfels().at(u, v)) {
-                const double quality = purity(q) * likeness<kNormalPower>(centre, q);
+                const auto quality =
+                    static_cast<double>(q.purity * likeness<kNormalPower>(centre, q));
                 if (quality > kLeastWeight)
                     samples.push_back(
                         {quality, quality * near * pixel.trust, frame.of(q), pixel.value});
@@ -254,7 +254,7 @@ void GuidedFit::blend(const Surfel& p, int u, int v, double weight, glm::dvec4& 
     for (const Surfel& q : input_.surfels().at(u, v)) {
         const Fit& fit = fits_[index++];
         if (fit.order < 0) continue;
-        const double w = weight * static_cast<double>(q.coverage) * likeness<kNormalPower>(p, q);
+        const double w = weight * static_cast<double>(q.coverage * likeness<kNormalPower>(q, p));
         if (w > 0) sum += w * glm::dvec4(fit.at(p), 1.0);
     }
 }

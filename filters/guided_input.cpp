@@ -30,8 +30,9 @@ GuidedInput::GuidedInput(const GuidedTask& task)
     : low_(task.low),
       threads_(task.request.threads),
       view_(task.guide, task.low.size()),
-      fine_(view_.size() == task.request.size ? SurfelGrid()
-                                              : SurfelGrid(view_, task.request.size, threads_)),
+      fine_(view_.size() == task.request.size
+                ? SurfelGrid()
+                : SurfelGrid::of_samples(view_, task.request.size, threads_)),
       surfels_(view_.size() == task.request.size ? SurfelGrid(view_, task.low.size(), threads_)
                                                  : SurfelGrid(fine_, task.low.size(), threads_)),
       reflected_(task.low.size()) {
@@ -50,10 +51,7 @@ GuidedInput::GuidedInput(const GuidedTask& task)
 glm::dvec3 GuidedInput::emission(int x, int y) const {
     if (!view_.knows_emission()) return glm::dvec3(0.0);
     if (!low_.emission.empty()) return glm::dvec3(low_.emission(x, y));
-    glm::dvec3 sum(0.0);
-    for (const Surfel& surfel : surfels_.at(x, y))
-        sum += static_cast<double>(surfel.coverage) * glm::dvec3(surfel.emission);
-    return sum;
+    return mean_over(surfels_.at(x, y), [](const Surfel& q) { return q.emission; });
 }
 
 }  // namespace vecino

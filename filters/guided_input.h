@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/parallel.h"
@@ -29,6 +30,19 @@ struct AxisWindow {
 /// Of every pixel of an axis: windows of low-resolution pixels around the corresponding one,
 /// weighed by their distance from the pixel's own centre.
 std::vector<AxisWindow> axis_windows(int full, int low, int window);
+
+/// The mean over a pixel's surfels, by coverage: of a constant, that constant.
+template <class ValueOf>
+glm::dvec3 mean_over(std::span<const Surfel> surfels, const ValueOf& value_of) {
+    glm::dvec3 sum(0.0);
+    double whole = 0;
+    for (const Surfel& surfel : surfels) {
+        const auto coverage = static_cast<double>(surfel.coverage);
+        sum += coverage * glm::dvec3(value_of(surfel));
+        whole += coverage;
+    }
+    return sum / whole;
+}
 
 class GuidedInput {
   public:
@@ -65,12 +79,6 @@ inline bool is_finite(const glm::dvec3& v) {
 /// Of less than this nothing is left that could be told from rounding.
 constexpr double kLeastWeight = 1e-30;
 
-/// A low-resolution pixel that shows several surfaces tells little of each: where there are whole
-/// ones, they count.
-inline double purity(const Surfel& q) {
-    return power_of(static_cast<double>(q.coverage), 16);
-}
-
 /// The plain mean of the finite values in the 3x3 pixels around one, within the window; none if
 /// there are none.
 template <class ValueAt>
@@ -106,11 +114,8 @@ inline glm::vec3 in_range(const glm::dvec3& v) {
 /// The radiance of a pixel: that of its surfels, by coverage.
 template <class Resolve>
 glm::vec3 resolve_pixel(const GuidedInput& input, int x, int y, const Resolve& resolve) {
-    if (input.is_plain()) return in_range(resolve(input.guide().at(x, y)));
-    glm::dvec3 sum(0.0);
-    for (const Surfel& surfel : input.fine().at(x, y))
-        sum += static_cast<double>(surfel.coverage) * resolve(surfel);
-    return in_range(sum);
+    if (input.is_plain()) return in_range(resolve(input.guide().pixel(x, y)));
+    return in_range(mean_over(input.fine().at(x, y), resolve));
 }
 
 /// The whole image, of which light_of(surfel, x, y, outcome) tells the radiance of each surfel.

@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kNormalPower = 64;
 
-/// How alike two albedos are: a seam between two materials is an edge too.
-double albedo_likeness(const Surfel& p, const Surfel& q) {
-    constexpr double kScale = 10.0;  // 1 over the difference that counts as one e-fold
-    const glm::dvec3 d(p.modulation - q.modulation);
-    return exp_of_negative(-kScale * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z)));
+/// How unlike two albedos are: a seam between two materials is an edge too.
+float albedo_distance(const Surfel& p, const Surfel& q) {
+    constexpr float kScale = 10.0f;  // 1 over the difference that counts as one e-fold
+    const glm::vec3 d = p.modulation - q.modulation;
+    return kScale * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
 }
 
 class JointBilateral {
@@ -39,10 +39,11 @@ class JointBilateral {
                 const int v = rows.begin + static_cast<int>(j);
                 const glm::dvec3& value = input_.reflected(u, v);
                 if (!is_finite(value)) continue;
-                double alike = 0;
+                float alike = 0;
                 for (const Surfel& q : input_.surfels().at(u, v))
-                    alike += purity(q) * likeness<kNormalPower>(p, q) * albedo_likeness(p, q);
-                const double weight = columns.weights[i] * rows.weights[j] * alike;
+                    alike += q.purity * likeness<kNormalPower>(q, p, albedo_distance(p, q));
+                const double weight =
+                    columns.weights[i] * rows.weights[j] * static_cast<double>(alike);
                 sum += weight * value;
                 weights += weight;
             }

@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kRowsPerBlock = 2;
 constexpr double kLeastShare = 1e-9;  // of a pixel: less is rounding
 constexpr float kLeastAlbedo = 0.01f;
+constexpr int kPurityPower = 16;
 constexpr std::size_t kMostSurfels = 8;  ///< in a pixel; the last one takes in what comes after
 
 float largest(const glm::vec3& v) {
@@ -21,17 +22,12 @@ float largest(const glm::vec3& v) {
 /// Whether a guide pixel belongs to a surfel that another one began.
 bool is_same_surface(const Surfel& surfel, const Surfel& pixel) {
     constexpr float kLeastCosine = 0.9f;
-    constexpr double kMostFootprints = 0.5;
+    constexpr float kMostFootprints = 0.5;
     if (surfel.kind != pixel.kind || surfel.id != pixel.id) return false;
     if (surfel.kind == SurfelKind::miss || surfel.kind == SurfelKind::broken) return true;
     if (surfel.normal != glm::vec3(0.0f) && !(glm::dot(surfel.normal, pixel.normal) > kLeastCosine))
         return false;
-    if (surfel.inverse_footprint > 0) {
-        const glm::dvec3 d = glm::dvec3(pixel.position) - glm::dvec3(surfel.position);
-        const double far = std::abs(glm::dot(glm::dvec3(surfel.normal), d));
-        return far * static_cast<double>(surfel.inverse_footprint) < kMostFootprints;
-    }
-    return surfel.normal != glm::vec3(0.0f) || likeness<1>(surfel, pixel) > 0.6;
+    return distance_from_plane(surfel, pixel) < kMostFootprints;
 }
 
 /// A surfel while guide pixels are added to it.
@@ -41,6 +37,7 @@ struct Gathered {
     glm::dvec2 place{0.0}, inverse_slope{0.0};
     double inverse_distance = 0;
     double weight = 0;
+    double slope_weight = 0;
     float inverse_footprint = 0;
 
     void add(const Surfel& pixel, double w) {
@@ -49,16 +46,19 @@ struct Gathered {
         modulation += w * glm::dvec3(pixel.modulation);
         emission += w * glm::dvec3(pixel.emission);
         place += w * glm::dvec2(pixel.place);
+        weight += w;
         // Whichever pixel came first: the least footprint, the mean slope.
         inverse_footprint = std::max(inverse_footprint, pixel.inverse_footprint);
         inverse_distance += w * static_cast<double>(pixel.inverse_distance);
+        if (pixel.inverse_slope == glm::vec2(0.0f)) return;
         inverse_slope += w * glm::dvec2(pixel.inverse_slope);
-        weight += w;
+        slope_weight += w;
     }
     /// The mean. A single pixel stays as it is, to the bit.
     [[nodiscard]] Surfel surfel(double whole) const {
         Surfel result = first;
         result.coverage = static_cast<float>(weight / whole);
+        result.purity = power_of(result.coverage, kPurityPower);
         result.position = glm::vec3(position / weight);
         result.modulation = glm::vec3(modulation / weight);
         result.emission = glm::vec3(emission / weight);
@@ -67,7 +67,7 @@ struct Gathered {
         if (length > 0) result.normal = glm::vec3(normal / length);
         result.inverse_footprint = inverse_footprint;
         result.inverse_distance = static_cast<float>(inverse_distance / weight);
-        result.inverse_slope = glm::vec2(inverse_slope / weight);
+        if (slope_weight > 0) result.inverse_slope = glm::vec2(inverse_slope / slope_weight);
         return result;
     }
 };
@@ -88,35 +88,53 @@ struct Overlap {
     }
 };
 
-/// Adds a part of a pixel to the surfel that it belongs to.
-void gather(std::vector<Gathered>& found, const Surfel& part, double weight) {
+/// Adds a part of a pixel to the surfel that it belongs to; complete() makes it the first of a new
+/// one.
+template <class Complete>
+void gather(std::vector<Gathered>& found, const Surfel& part, double weight,
+            const Complete& complete) {
     auto same = std::ranges::find_if(
         found, [&](const Gathered& each) { return is_same_surface(each.first, part); });
-    if (same == found.end()) {
-        if (found.size() < kMostSurfels) found.push_back({part});
-        same = std::prev(found.end());
-    }
-    same->add(part, weight);
+    if (same != found.end()) return same->add(part, weight);
+    if (found.size() == kMostSurfels) return found.back().add(part, weight);
+    Surfel first = part;
+    complete(first);
+    found.push_back({first});
+    found.back().add(first, weight);
 }
 
-/// The pixels of a guide, as what coarser pixels are made of.
+/// The pixels of a guide, as what low-resolution pixels are made of.
 struct GuideSource {
     const GuideView& guide;
 
     [[nodiscard]] Extent size() const { return guide.size(); }
     void gather_pixel(int x, int y, double weight, std::vector<Gathered>& found) const {
-        gather(found, guide.at(x, y), weight);
+        Surfel sample = guide.sample(x, y);
+        guide.fill_slopes(sample, x, y);
+        gather(found, sample, weight, [](Surfel&) {});
     }
 };
 
-/// Those of a finer grid.
+/// The same where a pixel has many: the first of a surface alone is asked for what its neighbours
+/// tell.
+struct FineGuideSource {
+    const GuideView& guide;
+
+    [[nodiscard]] Extent size() const { return guide.size(); }
+    void gather_pixel(int x, int y, double weight, std::vector<Gathered>& found) const {
+        gather(found, guide.sample(x, y), weight,
+               [&](Surfel& first) { guide.fill_slopes(first, x, y); });
+    }
+};
+
+/// The surfels of a finer grid.
 struct GridSource {
     const SurfelGrid& grid;
 
     [[nodiscard]] Extent size() const { return grid.size(); }
     void gather_pixel(int x, int y, double weight, std::vector<Gathered>& found) const {
         for (const Surfel& part : grid.at(x, y))
-            gather(found, part, weight * static_cast<double>(part.coverage));
+            gather(found, part, weight * static_cast<double>(part.coverage), [](Surfel&) {});
     }
 };
 
@@ -234,12 +252,17 @@ void GuideView::fill_colour(Surfel& surfel, int x, int y) const {
     }
 }
 
-Surfel GuideView::at(int x, int y) const {
+Surfel GuideView::sample(int x, int y) const {
     Surfel surfel;
     surfel.place = (glm::vec2(x, y) + 0.5f) * low_per_pixel_;
     fill_geometry(surfel, x, y);
-    fill_slopes(surfel, x, y);
     fill_colour(surfel, x, y);
+    return surfel;
+}
+
+Surfel GuideView::pixel(int x, int y) const {
+    Surfel surfel = sample(x, y);
+    if (guide_.normal_world.empty()) fill_slopes(surfel, x, y);
     return surfel;
 }
 
@@ -278,6 +301,14 @@ void SurfelGrid::fill(const Source& source, int threads) {
 SurfelGrid::SurfelGrid(const GuideView& guide, Extent cells, int threads)
     : size_(cells), rows_(static_cast<std::size_t>(cells.height)) {
     fill(GuideSource{guide}, threads);
+}
+
+SurfelGrid SurfelGrid::of_samples(const GuideView& guide, Extent pixels, int threads) {
+    SurfelGrid grid;
+    grid.size_ = pixels;
+    grid.rows_.resize(static_cast<std::size_t>(pixels.height));
+    grid.fill(FineGuideSource{guide}, threads);
+    return grid;
 }
 
 SurfelGrid::SurfelGrid(const SurfelGrid& fine, Extent cells, int threads)

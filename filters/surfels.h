@@ -39,45 +39,50 @@ struct Surfel {
     float inverse_distance = 0;     ///< from the camera; where no position is known
     glm::vec2 inverse_slope{0.0f};  ///< its change per low-resolution pixel
     float coverage = 1;             ///< share of the pixel, 0 to 1
+    float purity = 1;  ///< how much the pixel's light tells of it, where others are whole
     std::int32_t id = 0;
     SurfelKind kind = SurfelKind::diffuse;
 };
 
 /// Low-resolution pixels that a distance is wide, where only distances are known and no angle of
 /// view: about that of a usual camera at a few hundred pixels.
-constexpr double kAssumedPixelsPerDistance = 200.0;
+constexpr float kAssumedPixelsPerDistance = 200.0f;
 
 /// Whole powers by squaring.
-constexpr double power_of(double x, int exponent) {
-    double result = 1.0;
+constexpr float power_of(float x, int exponent) {
+    float result = 1.0f;
     for (; exponent > 0; exponent /= 2, x *= x) {
         if (exponent % 2 == 1) result *= x;
     }
     return result;
 }
 
-/// How surely two surfels are of one surface, 0 to 1, seen from the first: same id, small distance
-/// of the second from the first's plane, like normals.
-template <int kNormalPower>
-double likeness(const Surfel& p, const Surfel& q) {
-    if (p.kind != q.kind || p.id != q.id) return 0.0;
-    if (p.kind == SurfelKind::miss || p.kind == SurfelKind::broken) return 1.0;
-    const glm::dvec3 n(p.normal);
-    double far = 0.0;
-    if (p.inverse_footprint > 0) {
-        const glm::dvec3 d = glm::dvec3(q.position) - glm::dvec3(p.position);
-        far = std::abs(glm::dot(n, d)) * static_cast<double>(p.inverse_footprint);
-    } else if (p.inverse_distance > 0) {
-        // On a plane the inverse of the distance is linear in the image.
-        const glm::vec2 step = q.place - p.place;
-        const float there = p.inverse_distance + glm::dot(p.inverse_slope, step);
-        far = static_cast<double>(std::abs(q.inverse_distance - there) / p.inverse_distance) *
-              kAssumedPixelsPerDistance;
+/// How far a surfel is from another one's plane, in low-resolution pixels; 0 where that is not
+/// known.
+inline float distance_from_plane(const Surfel& plane, const Surfel& q) {
+    if (plane.inverse_footprint > 0) {
+        const glm::vec3 d = q.position - plane.position;
+        return std::abs(glm::dot(plane.normal, d)) * plane.inverse_footprint;
     }
-    double weight = exp_of_negative(-far);
-    if (p.normal != glm::vec3(0.0f))
-        weight *= power_of(std::max(glm::dot(n, glm::dvec3(q.normal)), 0.0), kNormalPower);
-    return weight;
+    if (plane.inverse_distance > 0) {
+        // On a plane the inverse of the distance is linear in the image.
+        const glm::vec2 step = q.place - plane.place;
+        const float there = plane.inverse_distance + glm::dot(plane.inverse_slope, step);
+        return std::abs(q.inverse_distance - there) / plane.inverse_distance *
+               kAssumedPixelsPerDistance;
+    }
+    return 0.0f;
+}
+
+/// How surely a pixel's surfel p is of the surface of a low-resolution surfel q, 0 to 1: of the
+/// same id, near to its plane, of a like normal. far is added to the distance from the plane.
+template <int kNormalPower>
+float likeness(const Surfel& q, const Surfel& p, float far = 0.0f) {
+    if (p.kind != q.kind || p.id != q.id) return 0.0f;
+    if (p.kind == SurfelKind::miss || p.kind == SurfelKind::broken) return 1.0f;
+    const float weight = exp_of_negative(-(distance_from_plane(q, p) + far));
+    if (p.normal == glm::vec3(0.0f)) return weight;
+    return weight * power_of(std::max(glm::dot(p.normal, q.normal), 0.0f), kNormalPower);
 }
 
 /// What a guide says of its own pixels.
@@ -87,8 +92,13 @@ class GuideView {
     GuideView(const Frame& guide, Extent low);
 
     [[nodiscard]] Extent size() const { return size_; }
-    /// Of coverage 1. Precondition: inside.
-    [[nodiscard]] Surfel at(int x, int y) const;
+    /// Of coverage 1, without what neighbours tell: footprint, slope, and the normal if the guide
+    /// has none. Precondition: inside.
+    [[nodiscard]] Surfel sample(int x, int y) const;
+    /// Adds that.
+    void fill_slopes(Surfel& surfel, int x, int y) const;
+    /// What a pixel of the result is compared by: a normal in any case.
+    [[nodiscard]] Surfel pixel(int x, int y) const;
     /// Whether misses and emitters are accounted for by the guide's own emission.
     [[nodiscard]] bool knows_emission() const { return !guide_.emission.empty(); }
 
@@ -98,7 +108,6 @@ class GuideView {
     [[nodiscard]] glm::dvec3 step_between(int x, int y, int dx, int dy) const;
     [[nodiscard]] float inverse_distance(int x, int y) const;
     void fill_geometry(Surfel& surfel, int x, int y) const;
-    void fill_slopes(Surfel& surfel, int x, int y) const;
     void fill_colour(Surfel& surfel, int x, int y) const;
 
     const Frame& guide_;
@@ -112,7 +121,9 @@ class SurfelGrid {
     SurfelGrid() = default;
     /// Of pixels that lie over those of a guide.
     SurfelGrid(const GuideView& guide, Extent cells, int threads);
-    /// The same, from a finer grid of the guide.
+    /// Of pixels of the result, each of which the guide has many samples of.
+    static SurfelGrid of_samples(const GuideView& guide, Extent pixels, int threads);
+    /// Of low-resolution pixels, from those of the result.
     SurfelGrid(const SurfelGrid& fine, Extent cells, int threads);
 
     [[nodiscard]] Extent size() const { return size_; }
