@@ -145,6 +145,7 @@ struct FirstHitRecord {
     float position_world[3];
     float normal_world[3];
     float albedo[3];
+    float emission[3];  ///< written by trace_centres alone; the background of a miss
     float distance_world;
     std::int32_t object_id;
 };

@@ -19,14 +19,24 @@ struct BuiltImage {
     Reconstruction made;
     double reconstruct_s = 0;
     double elsewhere_s = 0;  ///< tracing by another program
+    double guide_s = 0;
 };
 
-BuiltImage reconstruct_timed(const Cell& cell, const Frame& low, int repeat) {
+ReconstructionRequest request_of(const Cell& cell, GuideStore& guides) {
+    ReconstructionRequest request{cell.settings.size, cell.parameters, 0};
+    if (cell.scheme->uses_guide()) request.guide = &guides.get(cell.parameters.guide_scale).frame;
+    return request;
+}
+
+BuiltImage reconstruct_timed(const Cell& cell, const Frame& low, const CellInput& input) {
     std::vector<double> times;
     BuiltImage built;
-    for (int i = 0; i < repeat; ++i) {
+    const ReconstructionRequest request = request_of(cell, *input.guides);
+    if (cell.scheme->uses_guide())
+        built.guide_s = input.guides->get(cell.parameters.guide_scale).trace_s;
+    for (int i = 0; i < input.matrix->repeat; ++i) {
         const Stopwatch watch;
-        built.made = reconstruct(low, *cell.scheme, {cell.settings.size, cell.parameters, 0});
+        built.made = reconstruct(low, *cell.scheme, request);
         times.push_back(watch.seconds());
         if (times.back() > kRepeatBelow_s) break;
     }
@@ -91,10 +101,10 @@ BuiltImage build_image(const Cell& cell, const CellInput& input, const RunDirect
             return image_from_elsewhere(cell, input, directory);
         case CellKind::scheme: {
             if (cell.inject.empty())
-                return reconstruct_timed(cell, input.traced->render.frame, input.matrix->repeat);
+                return reconstruct_timed(cell, input.traced->render.frame, input);
             Frame low = input.traced->render.frame;
             inject(cell.inject, low);
-            return reconstruct_timed(cell, low, input.matrix->repeat);
+            return reconstruct_timed(cell, low, input);
         }
         case CellKind::blocky_ceiling: {
             const Extent low = reduced(cell.settings.size, cell.settings.reduction);
@@ -135,25 +145,29 @@ double save(const Image& image, const Cell& cell, const RunDirectory& directory)
     return write_s;
 }
 
-nlohmann::json times_json(const RenderStatistics& s, double reconstruct_s, double write_s) {
+nlohmann::json times_json(const RenderStatistics& s, const BuiltImage& built, double write_s) {
     return {{"scene", s.scene_s},
             {"trace", s.trace_s},
-            {"reconstruct", reconstruct_s},
+            {"guide", built.guide_s},
+            {"reconstruct", built.reconstruct_s},
             {"write", write_s},
-            {"total", s.scene_s + s.trace_s + reconstruct_s + write_s}};
+            {"total", s.scene_s + s.trace_s + built.guide_s + built.reconstruct_s + write_s}};
 }
 
 /// What the cell makes of a frame of its settings.
-Image image_of(const Cell& cell, const Frame& frame) {
+Image image_of(const Cell& cell, const Frame& frame, GuideStore& guides) {
     if (cell.scheme == nullptr) return frame.radiance;
-    return reconstruct(frame, *cell.scheme, {cell.settings.size, cell.parameters, 0}).image;
+    return reconstruct(frame, *cell.scheme, request_of(cell, guides)).image;
 }
 
 nlohmann::json measure_stability(const Cell& cell, const Image& image, const CellInput& input,
                                  const RunDirectory& directory) {
     nlohmann::json json = shimmer_json(
         input.shifted, {&image, &input.reference->image}, [&](const ShiftedView& view) {
-            Image shifted = image_of(cell, view.frame);
+            RenderSettings settings = cell.settings;
+            settings.camera_shift += view.shift;
+            GuideStore guides(*input.scene, settings, 1);
+            Image shifted = image_of(cell, view.frame, guides);
             save_image(shifted,
                        directory.file_in("cells/" + cell.name, shifted_image_file(view.shift)));
             return shifted;
@@ -163,7 +177,7 @@ nlohmann::json measure_stability(const Cell& cell, const Image& image, const Cel
     const auto make = [&](const Cell& other) {
         return cell.kind == CellKind::method
                    ? render_frame(other, *input.scene).render.frame.radiance
-                   : image_of(other, input.traced->render.frame);
+                   : image_of(other, input.traced->render.frame, *input.guides);
     };
     return {{"shimmer", json}, {"elasticity", elasticity_json(cell, input.reference->image, make)}};
 }
@@ -179,7 +193,7 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
     s.trace_s += built.elsewhere_s;
     // What took no time that is known did not take that of writing alone either.
     const bool is_timed = s.trace_s + built.reconstruct_s > 0;
-    row["time_s"] = times_json(s, built.reconstruct_s, is_timed ? write_s : 0);
+    row["time_s"] = times_json(s, built, is_timed ? write_s : 0);
     row["counts"] = {{"samples", s.samples},
                      {"rays", s.rays},
                      {"dropped_samples", s.dropped_samples + built.made.dropped_samples},

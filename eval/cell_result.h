@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "eval/guide_store.h"
 #include "eval/matrix.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
@@ -22,6 +23,7 @@ struct CellInput {
     const Matrix* matrix = nullptr;
     const MethodRender* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
+    GuideStore* guides = nullptr;  ///< null where no frame is read
     const Scene* scene = nullptr;               ///< null where no frame is read
     std::span<const ShiftedView> shifted = {};  ///< as the matrix asks for under "stability"
 };

@@ -104,6 +104,7 @@ Planes planes_read_by(const Cell& cell) {
     if (cell.kind == CellKind::image) planes.add(cell.image->planes);
     if (cell.scheme == nullptr) return planes;
     planes.add(cell.scheme->needs);
+    planes.add(cell.scheme->may_read);
     if (cell.scheme->needs.has(Plane::position)) planes.add(Plane::id);  // tells misses apart
     return planes;
 }

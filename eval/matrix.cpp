@@ -193,6 +193,7 @@ class Expansion {
         push_ceiling(assignment);
         Cell cell = make_cell(assignment, CellKind::scheme);
         cell.scheme = &find_scheme(scheme->string());
+        cell.parameters = cell.scheme->defaults;
         read_scheme_options(cell, assignment);
         set_name(cell, assignment);
         cell.against = against;

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
@@ -305,10 +306,12 @@ class Runner {
             return;
         }
         MethodRender traced;
+        std::optional<GuideStore> guides;
         if (job.traces) {
             traced = trace(job);
             input.traced = &traced;
             input.scene = &scenes_.at(job.cells.front()->scene);
+            input.guides = &guides.emplace(*input.scene, job.settings, matrix_.repeat);
         }
         const std::vector<ShiftedView> shifted = shifted_views(job);
         input.shifted = shifted;
