@@ -29,13 +29,31 @@ struct LightLanes {
 
 /// What W samples saw.
 struct SampleLanes {
-    Surface surface;
-    Int object;
+    Surface surface;  ///< by way of mirrors; its albedo is times theirs
+    Int object;       ///< stands for it and for them
+    Int mirrors;
+    Float distance;  ///< from the camera
     Float3 emission;
     Mask looked;  ///< whose light was looked at
     LightLanes lights[kMostExactLights];
     Float3 picked;
 };
+
+inline Surface select(Mask m, const Surface& a, const Surface& b) {
+    Surface s;
+    s.hit = select(m, a.hit, b.hit);
+    s.position = select(m, a.position, b.position);
+    s.geometric_normal = select(m, a.geometric_normal, b.geometric_normal);
+    s.normal = select(m, a.normal, b.normal);
+    s.shading_normal = select(m, a.shading_normal, b.shading_normal);
+    s.albedo = select(m, a.albedo, b.albedo);
+    s.offset = select(m, a.offset, b.offset);
+    s.distance = select(m, a.distance, b.distance);
+    s.index = select(m, a.index, b.index);
+    s.front = select(m, a.front, b.front);
+    s.direction = select(m, a.direction, b.direction);
+    return s;
+}
 
 inline Int object_of(const TraceTask& task, const Surface& s) {
     const auto* const table = reinterpret_cast<const float*>(task.surfaces.object_id);
@@ -102,7 +120,8 @@ inline void look_at_lights(Tracer& tracer, const TraceTask& task, const PathRand
     sample.picked = Float3{};
     for (LightLanes& light : sample.lights) light = LightLanes{};
     if (task.max_depth < 1) return;
-    const Mask active = reflects(sample.surface);
+    // Light that has come by mirrors has bounces behind it.
+    const Mask active = reflects(sample.surface) & (sample.mirrors < task.max_depth);
     if (!any(active)) return;
     if (picks_lights(task)) {
         sample.looked = active;
@@ -117,13 +136,46 @@ inline void look_at_lights(Tracer& tracer, const TraceTask& task, const PathRand
     }
 }
 
-inline SampleLanes first_look(const Tracer& tracer, const TraceTask& task, const Surface& surface,
+/// A number that tells a surface seen through mirrors from others. Misses stay negative.
+inline Int through_mirror(Int mirror, Int object) {
+    const Uint mixed = ((Uint)mirror * 0x9E3779B1u) ^ ((Uint)object * 0x85EBCA77u);
+    const Int number = (Int)((mixed ^ (mixed >> 15)) & 0x3FFFFFFFu) | 0x40000000;
+    return select(object < 0, ~number, number);
+}
+
+/// Goes on from mirrors to what they show, as far as the depth of paths allows.
+inline void look_through_mirrors(Tracer& tracer, const TraceTask& task, SampleLanes& sample) {
+    Float3 shine = {splat(1.0f), splat(1.0f), splat(1.0f)};
+    Mask mirror = tracer.mirrors(sample.surface);
+    for (int bounce = 0; bounce < task.max_depth && any(mirror); ++bounce) {
+        const Surface& s = sample.surface;
+        shine = select(mirror, shine * s.albedo, shine);
+        const Surface next = tracer.trace({ray_origin(s), mirror_direction(s)}, mirror);
+        const Int object = object_of(task, next);
+        const Float3 emission = select(next.hit, tracer.emission(next), splat3(task.background));
+        sample.object = select(mirror, through_mirror(sample.object, object), sample.object);
+        sample.mirrors -= mirror;
+        sample.distance =
+            select(mirror & next.hit, sample.distance + next.distance, sample.distance);
+        sample.emission = select(mirror, shine * emission, sample.emission);
+        sample.surface = select(mirror, next, s);
+        mirror &= tracer.mirrors(sample.surface);
+    }
+    sample.surface.albedo = sample.surface.albedo * shine;
+    // A mirror that is left reflects what no path may follow.
+    sample.surface.albedo = select(mirror, Float3{}, sample.surface.albedo);
+}
+
+inline SampleLanes first_look(Tracer& tracer, const TraceTask& task, const Surface& surface,
                               Mask active) {
     SampleLanes sample;
     sample.surface = surface;
     sample.object = object_of(task, surface);
+    sample.mirrors = Int{};
+    sample.distance = surface.distance;
     sample.emission =
         select(active & ~surface.hit, splat3(task.background), tracer.emission(surface));
+    if (task.has_mirrors) look_through_mirrors(tracer, task, sample);
     return sample;
 }
 
@@ -159,6 +211,7 @@ inline Cluster empty_cluster(const SampleLanes& sample, int lane, std::uint32_t 
     cluster.object = sample.object[lane];
     cluster.surface = cluster.object < 0 ? -1 : sample.surface.index[lane];
     cluster.first_sample = number;
+    cluster.mirrors = sample.mirrors[lane];
     if (cluster.object >= 0) put_lane(cluster.first_normal, sample.surface.shading_normal, lane);
     return cluster;
 }
@@ -203,7 +256,7 @@ inline void add_to_cluster(const TraceTask& task, const SampleLanes& sample, Mas
 
 /// Sums of the samples of W pixels, each of its first surface.
 struct PilotLanes {
-    Int object{}, surface{};
+    Int object{}, surface{}, mirrors{};
     Float3 first_normal{}, position{}, normal{}, albedo{}, emission{}, picked{};
     Float count{}, shadow_count{}, picked_square{};
     LightLanes lights[kMostExactLights]{};
@@ -238,6 +291,7 @@ inline void store(float (&to)[3][kPilotPixels], int at, const Float3& v) {
 inline void store(PilotBlock& block, int at, const TraceTask& task, const PilotLanes& sums) {
     store(block.object + at, sums.object);
     store(block.surface + at, sums.surface);
+    store(block.mirrors + at, sums.mirrors);
     store(block.count + at, sums.count);
     store(block.shadow_count + at, sums.shadow_count);
     store(block.first_normal, at, sums.first_normal);
@@ -303,15 +357,17 @@ inline void pilot_packet(Tracer& tracer, const TraceTask& task, const PilotRange
         const Pair jitter = random.pair(0);
         const Ray ray = tracer.primary_ray(jitter.u + __builtin_convertvector(x, Float),
                                            jitter.v + static_cast<float>(range.y));
-        SampleLanes sample = first_look(tracer, task, tracer.trace(ray, active), active);
+        const Surface surface = tracer.trace(ray, active);
+        SampleLanes sample = first_look(tracer, task, surface, active);
         look_at_lights(
             tracer, task, random, [&](int) { return active; }, sample);
         if (number == 0) {
             sums.object = sample.object;
+            sums.mirrors = sample.mirrors;
             sums.surface = select(sample.surface.hit, sample.surface.index, Int{} - 1);
             sums.first_normal = sample.surface.shading_normal;
             for (int i = 0; out.first_hits != nullptr && i < W && at + i < range.count; ++i)
-                record_first_hit(task, sample.surface, i, out.first_hits[at + i]);
+                record_first_hit(task, surface, i, out.first_hits[at + i]);
         }
         const Mask first = active & belongs(sample, sums.object, sums.first_normal);
         add(sums, task, sample, first);

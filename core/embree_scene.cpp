@@ -232,7 +232,9 @@ EmbreeScene::EmbreeScene(const EmbreeGeometry& geometry) : handles_(nullptr) {
     handles->device.reset(rtcNewDevice(nullptr));
     if (!handles->device) throw std::runtime_error("Embree: no device");
     handles->scene.reset(rtcNewScene(handles->device.get()));
-    if (geometry.watertight) rtcSetSceneFlags(handles->scene.get(), RTC_SCENE_FLAG_ROBUST);
+    // Else rays slip between neighbouring triangles, the two halves of a quad among them.
+    if (geometry.watertight || geometry.quad_count > kMostParallelograms)
+        rtcSetSceneFlags(handles->scene.get(), RTC_SCENE_FLAG_ROBUST);
     RTCDevice const device = handles->device.get();
     RTCScene const scene = handles->scene.get();
     handles->spheres.assign(geometry.spheres, geometry.spheres + geometry.sphere_count);

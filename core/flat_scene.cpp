@@ -10,6 +10,7 @@
 
 #include "core/color.h"
 #include "core/embree_geometry.h"
+#include "core/texture.h"
 
 namespace vecino {
 namespace {
@@ -52,7 +53,12 @@ bool emits(const Material& material) {
 struct Triangle {
     std::array<glm::vec3, 3> corners;
     std::array<glm::vec3, 3> normals{};  ///< zero: use the geometric one
+    std::array<glm::vec2, 3> uvs{};
 };
+
+// Of the two halves of a quad.
+constexpr std::array<glm::vec2, 3> kUvs012{{{0, 0}, {1, 0}, {1, 1}}};
+constexpr std::array<glm::vec2, 3> kUvs023{{{0, 0}, {1, 1}, {0, 1}}};
 
 struct Surface {
     float fields[kSurfaceFields];
@@ -114,11 +120,11 @@ class Flattener {
     void add(const Quad& quad) {
         const auto& p = quad.corners_world;
         if (is_parallelogram(quad)) {
-            quads_.list.push_back(flat_surface({p[0], p[1], p[2]}, largest(p[3])));
+            quads_.list.push_back(flat_surface({{p[0], p[1], p[2]}, {}, kUvs012}, largest(p[3])));
             quads_.shapes.push_back(p);
         } else {
-            add_triangle({{p[0], p[1], p[2]}});
-            add_triangle({{p[0], p[2], p[3]}});
+            add_triangle({{p[0], p[1], p[2]}, {}, kUvs012});
+            add_triangle({{p[0], p[2], p[3]}, {}, kUvs023});
         }
         if (!emits(*material_)) return;
         if (is_parallelogram(quad)) {
@@ -138,6 +144,7 @@ class Flattener {
             for (std::size_t k = 0; k < 3; ++k) {
                 triangle.corners[k] = mesh.positions_world[index[k]];
                 if (!mesh.normals_world.empty()) triangle.normals[k] = mesh.normals_world[index[k]];
+                if (!mesh.uvs.empty()) triangle.uvs[k] = mesh.uvs[index[k]];
             }
             has_normals_ = has_normals_ || !mesh.normals_world.empty();
             add_triangle(triangle);
@@ -163,7 +170,7 @@ class Flattener {
     }
 
     void add_triangle(const Triangle& triangle) {
-        triangles_.list.push_back(flat_surface(triangle.corners, 0.0f));
+        triangles_.list.push_back(flat_surface(triangle, 0.0f));
         for (const glm::vec3& c : triangle.corners)
             triangles_.shapes.insert(triangles_.shapes.end(), {c.x, c.y, c.z});
         VertexNormals normals;
@@ -172,13 +179,20 @@ class Flattener {
     }
 
     /// Through three corners; any others' coordinates are at most `others`.
-    [[nodiscard]] Surface flat_surface(const std::array<glm::vec3, 3>& corners, float others) {
+    [[nodiscard]] Surface flat_surface(const Triangle& triangle, float others) {
+        const auto& corners = triangle.corners;
         const glm::dvec3 normal = normal_of(corners[0], corners[1], corners[2]);
         Surface surface = new_surface();
         put(surface.fields + kShape, normal);
         surface.fields[kShape + 3] = static_cast<float>(glm::dot(normal, glm::dvec3(corners[0])));
         for (const glm::vec3& corner : corners) others = std::max(others, largest(corner));
         surface.fields[kOffset] = kOffsetShare * others;
+        if (material_->albedo_texture != nullptr) {
+            surface.fields[kTexture] =
+                std::bit_cast<float>(static_cast<std::int32_t>(flat_.textures.size()));
+            flat_.textures.push_back(
+                place_texture(*material_->albedo_texture, corners, triangle.uvs));
+        }
         return surface;
     }
 
@@ -209,6 +223,9 @@ class Flattener {
             std::bit_cast<float>(emits(*material_) ? emitting_surfaces_++ : -1);
         put(surface.fields + kAlbedo, material_->albedo);
         put(surface.fields + kEmission, material_->emission);
+        surface.fields[kMirror] = std::bit_cast<float>(material_->mirror ? -1 : 0);
+        surface.fields[kTexture] = std::bit_cast<float>(-1);
+        flat_.has_mirrors = flat_.has_mirrors || material_->mirror;
         surface.object_id = object_id_;
         return surface;
     }
@@ -275,6 +292,8 @@ TraceTask trace_task(const Scene& scene, const FlatScene& flat, float aspect) {
     task.has_triangles = flat.first_sphere > flat.first_triangle;
     task.has_spheres = task.surfaces.count > flat.first_sphere;
     task.vertex_normals = flat.vertex_normals.empty() ? nullptr : flat.vertex_normals.data();
+    task.textures = flat.textures.empty() ? nullptr : flat.textures.data();
+    task.has_mirrors = flat.has_mirrors;
     task.lights = flat.lights.data();
     task.light_count = static_cast<std::uint32_t>(flat.lights.size());
     task.light_tree = {flat.light_tree.fields.data(), flat.light_tree.stride,

@@ -20,11 +20,14 @@ struct FlatScene {
     std::uint32_t first_triangle = 0;
     std::uint32_t first_sphere = 0;
     std::vector<VertexNormals> vertex_normals;  ///< one per triangle; empty: no mesh has normals
+    std::vector<PlacedTexture> textures;        ///< on their surfaces; the scene holds the images
+    bool has_mirrors = false;
     std::vector<LightRecord> lights;
     LightTreeTable light_tree;
     std::unique_ptr<EmbreeScene> embree;
 };
 
+/// Where the scene has textures, it must outlive the flat scene.
 FlatScene flatten(const Scene& scene);
 
 /// The part of a task that the scene fixes. The flat scene must outlive it.

@@ -63,29 +63,35 @@ class GatherSums {
     double counts_[4]{};
 };
 
-inline void describe_record(const TraceTask& task, const Surface& s, RecordLight& out) {
+inline void describe_record(const SampleLanes& sample, RecordLight& out) {
+    const Surface& s = sample.surface;
     out.hit = s.hit[0] != 0;
-    out.object = object_of(task, s)[0];
+    out.object = sample.object[0];
+    out.distance = sample.distance[0];
+    out.cosine = __builtin_fabsf(dot(s.direction, s.shading_normal)[0]);
     put_lane(out.position, s.position, 0);
     put_lane(out.normal, s.shading_normal, 0);
 }
 
-/// All lanes the same: the surface that one sample of a pixel hits.
-inline Surface surface_of_sample(Tracer& tracer, const TraceTask& task, const RecordRange& range,
-                                 std::uint32_t pixel) {
+/// All lanes the same: what one sample of a pixel shows.
+inline SampleLanes look_of_sample(Tracer& tracer, const TraceTask& task, const RecordRange& range,
+                                  std::uint32_t pixel) {
     const Pair jitter = PathRandom(task, pixel, splat(range.sample)).pair(0);
     const Ray ray = tracer.primary_ray(jitter.u + static_cast<float>(range.x),
                                        jitter.v + static_cast<float>(range.y));
-    return tracer.trace(ray, lane_numbers() >= 0);
+    const Mask all = lane_numbers() >= 0;
+    return first_look(tracer, task, tracer.trace(ray, all), all);
 }
 
-std::uint64_t gather_record(const TraceTask& task, const RecordRange& range, RecordLight& out) {
+std::uint64_t gather_record(const TraceTask& whole, const RecordRange& range, RecordLight& out) {
+    TraceTask task = whole;
     Tracer tracer(task);
     const auto pixel = static_cast<std::uint32_t>(range.y * task.width + range.x);
-    const Surface surface = surface_of_sample(tracer, task, range, pixel);
+    const SampleLanes look = look_of_sample(tracer, task, range, pixel);
     out = RecordLight{};
-    describe_record(task, surface, out);
-    if (!out.hit) return tracer.rays();
+    describe_record(look, out);
+    task.max_depth -= look.mirrors[0];
+    if (!out.hit || task.max_depth < 1) return tracer.rays();
     constexpr auto kBlock = static_cast<std::uint32_t>(kBlockSamples);
     GatherSums sums;
     SampleBlock block;
@@ -99,7 +105,7 @@ std::uint64_t gather_record(const TraceTask& task, const RecordRange& range, Rec
             const PathRandom random(task, pixel, number);
             PathPacket packet(task, random);
             const Float nearness =
-                packet.gather(tracer, surface, active, block, static_cast<int>(at - first));
+                packet.gather(tracer, look.surface, active, block, static_cast<int>(at - first));
             inverse_distance += sum_of(nearness, active);
         }
         sums.add(block, first, end, out);

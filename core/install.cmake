@@ -10,7 +10,7 @@ install(TARGETS vecino_core vecino_filters EXPORT vecino_targets
     FILE_SET HEADERS DESTINATION ${VECINO_INSTALL_INCLUDEDIR})
 install(EXPORT vecino_targets FILE vecino-targets.cmake NAMESPACE vecino:: DESTINATION ${package_dir})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY configs scenes DESTINATION ${data_dir} FILES_MATCHING PATTERN *.json)
+install(DIRECTORY configs scenes DESTINATION ${data_dir} FILES_MATCHING PATTERN *.json PATTERN *.png)
 
 string(REGEX MATCH "^[0-9]+" embree_major "${embree_VERSION}")
 set(made_dir ${PROJECT_BINARY_DIR}/package)

@@ -35,15 +35,17 @@ struct LightSums {
 
 /// Sums over the samples of one pixel that hit the same side of one surface.
 struct Cluster {
-    std::int32_t object;         ///< number of the object; -1: a miss
-    std::int32_t surface;        ///< of the first sample, in the table of surfaces
-    std::uint32_t first_sample;  ///< the first sample that hit it
-    float first_normal[3];       ///< what other samples' shading normals are held against
-    float count;                 ///< samples
-    float shadow_count;          ///< samples whose light was looked at
-    float position[3];           ///< world
-    float normal[3];             ///< of shading, unit before they were summed
-    float albedo[3];
+    /// Stands for the object, and for the mirrors that it is seen through; negative: a miss.
+    std::int32_t object;
+    std::int32_t mirrors;                ///< so many mirrors lie between
+    std::int32_t surface;                ///< of the first sample, in the table of surfaces
+    std::uint32_t first_sample;          ///< the first sample that hit it
+    float first_normal[3];               ///< what other samples' shading normals are held against
+    float count;                         ///< samples
+    float shadow_count;                  ///< samples whose light was looked at
+    float position[3];                   ///< world
+    float normal[3];                     ///< of shading, unit before they were summed
+    float albedo[3];                     ///< times that of the mirrors
     float emission[3];                   ///< radiance sent to the camera
     LightSums lights[kMostExactLights];  ///< by emitter, unless each sample picks one; then:
     float picked[3];                     ///< light over pi
@@ -60,6 +62,7 @@ struct ClusterList {
 struct PilotBlock {
     alignas(64) std::int32_t object[kPilotPixels];
     std::int32_t surface[kPilotPixels];
+    std::int32_t mirrors[kPilotPixels];
     float count[kPilotPixels];
     float shadow_count[kPilotPixels];
     float first_normal[3][kPilotPixels];
@@ -106,8 +109,10 @@ struct RecordRange {
 /// Light over pi that arrives at a surface otherwise than straight from an emitter: means over
 /// paths.
 struct RecordLight {
-    bool hit;  ///< false: the sample hit nothing, and the rest is 0
-    std::int32_t object;
+    bool hit;             ///< false: the sample hit nothing, and the rest is 0
+    std::int32_t object;  ///< as in a cluster
+    float distance;       ///< from the camera, by way of mirrors
+    float cosine;         ///< between the ray that hit it and its normal
     float position[3];
     float normal[3];         ///< of shading
     float background[3];     ///< straight from the background

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/json_schema.h"
+#include "core/texture.h"
 
 namespace vecino {
 namespace {
@@ -22,6 +23,8 @@ constexpr Vec3Kind kRadiance{{0.0, 1.0e30}};  // leaves room for sums
 constexpr RealKind kFieldOfView{{0.001, 179.0}};
 constexpr IntegerKind kIndex{0, std::numeric_limits<int>::max()};
 constexpr TextKind kText{};
+constexpr BooleanKind kBoolean{};
+constexpr RealKind kUnit{{0.0, 1.0}};
 constexpr Named<Pattern> kPatternNames[] = {{"xy_gradient", Pattern::xy_gradient}};
 constexpr ChoiceKind kPattern{kPatternNames};
 
@@ -54,14 +57,41 @@ Camera parse_camera(const JsonValue& json) {
 }
 
 constexpr JsonKey<Material> kMaterialKeys[] = {
-    member_key<kAlbedo, &Material::albedo>("albedo", optional, "share of light reflected"),
+    member_key<kAlbedo, &Material::albedo>(
+        "albedo", optional, "share of light reflected; default 0, of a mirror without texture 1"),
+    // Loaded once the others are read: materials share it.
+    {"albedo_texture", optional,
+     "an image instead of albedo, its path relative to the scene file; 8 and 16 bit are sRGB, "
+     "floating-point values linear",
+     [](Material&, const JsonValue& json) { (void)json.string(); }, schema_of<kText>},
     member_key<kRadiance, &Material::emission>("emission", optional,
                                                "radiance sent out, on one side"),
+    member_key<kBoolean, &Material::mirror>("mirror", optional,
+                                            "a perfect mirror instead of a diffuse surface"),
 };
 
-Material parse_material(const std::string& name, const JsonValue& json) {
+/// The texture of an earlier material that names the same file, or a new one.
+std::shared_ptr<const Texture> texture_of(const JsonValue& json,
+                                          const std::vector<Material>& materials) {
+    const std::string file = texture_file(json);
+    for (const Material& other : materials) {
+        if (other.albedo_texture != nullptr && other.albedo_texture->file == file)
+            return other.albedo_texture;
+    }
+    return load_texture(file, json);
+}
+
+Material parse_material(const std::string& name, const JsonValue& json,
+                        const std::vector<Material>& materials) {
     Material material{.name = name};
     read_object(json, kMaterialKeys, material);
+    const bool has_albedo = json.has("albedo");
+    if (json.has("albedo_texture")) {
+        if (has_albedo) json.fail("both albedo and albedo_texture", "one of them");
+        material.albedo_texture = texture_of(json.at("albedo_texture"), materials);
+    } else if (material.mirror && !has_albedo) {
+        material.albedo = glm::vec3(1.0f);
+    }
     return material;
 }
 
@@ -135,7 +165,22 @@ void read_normals(TriangleMesh& mesh, const JsonValue& json) {
     }
 }
 
-// In this order: triangles are checked against the positions, and normals counted.
+glm::vec2 parse_uv(const JsonValue& json) {
+    const auto numbers = json.elements();
+    if (numbers.size() != 2) json.fail(std::to_string(numbers.size()) + " elements", "2 numbers");
+    return {kUnit.read(numbers[0]), kUnit.read(numbers[1])};
+}
+
+void read_uvs(TriangleMesh& mesh, const JsonValue& json) {
+    for (const JsonValue& uv : json.elements()) mesh.uvs.push_back(parse_uv(uv));
+    const std::size_t count = mesh.positions_world.size();
+    if (mesh.uvs.size() != count) {
+        json.fail(std::to_string(mesh.uvs.size()) + " uvs",
+                  "as many as positions (" + std::to_string(count) + ")");
+    }
+}
+
+// In this order: triangles are checked against the positions, normals and uvs counted.
 constexpr JsonKey<TriangleMesh> kMeshKeys[] = {
     {"positions", required, "of the corners", read_positions,
      [] {
@@ -148,6 +193,13 @@ constexpr JsonKey<TriangleMesh> kMeshKeys[] = {
     {"normals", optional, "for shading, one for each position", read_normals,
      [] {
          return array_schema(kPoint.schema(), {3, 0});
+     }},
+    {"uvs", optional,
+     "where a texture's image lies, one for each position: (0, 0) is its lower left corner, "
+     "(1, 1) its upper right one",
+     read_uvs,
+     [] {
+         return array_schema(array_schema(kUnit.schema(), {2, 2}), {3, 0});
      }},
 };
 
@@ -179,6 +231,18 @@ std::size_t parse_material_name(const JsonValue& json, const std::vector<Materia
     json.fail("one of the scene's materials: " + join(names));
 }
 
+/// A texture needs to know where its image lies.
+void require_uvs(const Object& object, const JsonValue& json) {
+    if (std::holds_alternative<Sphere>(object.shape)) {
+        json.at("sphere").fail("a sphere of a material with albedo_texture",
+                               "a quad, or triangles with uvs");
+    }
+    const auto* const mesh = std::get_if<TriangleMesh>(&object.shape);
+    if (mesh != nullptr && mesh->uvs.empty()) {
+        json.at("triangles").fail("no key \"uvs\"", "uvs, since the material has albedo_texture");
+    }
+}
+
 Object parse_object(const JsonValue& json, const std::vector<Material>& materials) {
     std::vector<std::string_view> keys;
     std::ranges::transform(kShapes, std::back_inserter(keys), &JsonKey<Object>::name);
@@ -194,6 +258,7 @@ Object parse_object(const JsonValue& json, const std::vector<Material>& material
     }
     if (found != 1) json.fail(std::to_string(found) + " shapes", "exactly one of " + shapes);
     object.material = parse_material_name(json.at("material"), materials);
+    if (materials[object.material].albedo_texture != nullptr) require_uvs(object, json);
     return object;
 }
 
@@ -210,12 +275,14 @@ nlohmann::json one_object_schema() {
 
 void read_materials(Scene& scene, const JsonValue& json) {
     for (const auto& [name, material] : json.members()) {
-        scene.materials.push_back(parse_material(name, material));
+        scene.materials.push_back(parse_material(name, material, scene.materials));
     }
 }
 
 nlohmann::json materials_schema() {
-    return {{"type", "object"}, {"additionalProperties", object_schema(kMaterialKeys)}};
+    nlohmann::json material = object_schema(kMaterialKeys);
+    material["not"] = {{"required", {"albedo", "albedo_texture"}}};
+    return {{"type", "object"}, {"additionalProperties", material}};
 }
 
 void read_objects(Scene& scene, const JsonValue& json) {

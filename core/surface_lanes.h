@@ -7,6 +7,7 @@
 #include "core/embree_scene.h"
 #include "core/lanes.h"
 #include "core/packet_log.h"
+#include "core/texture_lanes.h"
 #include "core/trace_task.h"
 
 namespace vecino {
@@ -27,8 +28,9 @@ struct Surface {
     Float3 albedo;
     Float offset;
     Float distance;
-    Int index;   ///< into the table of surfaces; 0 at a miss
-    Mask front;  ///< seen from the side that emits
+    Int index;         ///< into the table of surfaces; 0 at a miss
+    Mask front;        ///< seen from the side that emits
+    Float3 direction;  ///< of the ray that hit it
 };
 
 class Tracer {
@@ -46,6 +48,8 @@ class Tracer {
     Float3 emission(const Surface& surface) const;
     /// The numbers of the emitters that send it; -1 where there is none.
     Int emitter(const Surface& surface) const;
+    /// Those that reflect as mirrors do.
+    Mask mirrors(const Surface& surface) const;
     std::uint64_t rays() const { return rays_; }
 
   private:
@@ -54,6 +58,7 @@ class Tracer {
     void put_on_spheres(const Float3& along_ray, const Float3& center, Float radius,
                         Surface& surface) const;
     void interpolate_normals(const HitPacket<W>& hits, const Ray& ray, Surface& surface) const;
+    void look_up_textures(Surface& surface) const;
     Float field(int number, Int index) const {
         const SurfaceTable& table = task_.surfaces;
         return lookup(table.fields + static_cast<std::size_t>(number) * table.stride, table.count,
@@ -146,7 +151,9 @@ inline Surface Tracer::shade(const Ray& ray, const HitPacket<W>& hits, Mask acti
     s.front = dot(s.geometric_normal, ray.direction) < 0.0f;
     s.normal = select(s.front, s.geometric_normal, -s.geometric_normal);
     s.shading_normal = s.normal;
+    s.direction = ray.direction;
     if (task_.vertex_normals != nullptr) interpolate_normals(hits, ray, s);
+    if (task_.textures != nullptr) look_up_textures(s);
     return s;
 }
 
@@ -165,6 +172,22 @@ inline Float3 Tracer::emission(const Surface& s) const {
 
 inline Int Tracer::emitter(const Surface& s) const {
     return select(s.front & s.hit, (Int)field(kLight, s.index), Int{} - 1);
+}
+
+inline Mask Tracer::mirrors(const Surface& s) const {
+    return task_.has_mirrors ? s.hit & (Int)field(kMirror, s.index) : Mask{};
+}
+
+inline void Tracer::look_up_textures(Surface& s) const {
+    const Int number = select(s.hit, (Int)field(kTexture, s.index), Int{} - 1);
+    for (int i = 0; i < W; ++i) {
+        if (number[i] < 0) continue;
+        const float position[3] = {s.position.x[i], s.position.y[i], s.position.z[i]};
+        const Texel texel = look_up(task_.textures[number[i]], position);
+        s.albedo.x[i] = texel.rgb[0];
+        s.albedo.y[i] = texel.rgb[1];
+        s.albedo.z[i] = texel.rgb[2];
+    }
 }
 
 inline void Tracer::interpolate_normals(const HitPacket<W>& hits, const Ray& ray,

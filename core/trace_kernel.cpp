@@ -71,6 +71,11 @@ LightSample sample_light(const TraceTask& task, const PickedLight& light, Float3
     return sample;
 }
 
+/// The direction in which a mirror sends on what hits it.
+Float3 mirror_direction(const Surface& s) {
+    return s.direction - s.shading_normal * (2.0f * dot(s.direction, s.shading_normal));
+}
+
 Float3 ray_origin(const Surface& s) {
     return s.position + s.normal * s.offset;
 }
@@ -175,12 +180,13 @@ class PathPacket {
     Float gather(Tracer& tracer, const Surface& surface, Mask active, SampleBlock& block, int at) {
         surface_ = surface;
         throughput_ = {splat(1.0f), splat(1.0f), splat(1.0f)};
+        mirror_ = Mask{};
         weighed_ = Mask{};
         const Ray ray = bounce_ray(random_.pair(2));
         active_ = active & (dot(ray.direction, surface_.normal) > 0.0f);
         if (!any(active_)) return Float{};
         if (task_.max_depth < 2) {
-            add(block.direct, at, find_background(tracer, ray));
+            if (task_.has_background) add(block.direct, at, find_background(tracer, ray));
             return Float{};
         }
         add(block.direct, at, follow(tracer, ray));
@@ -201,18 +207,21 @@ class PathPacket {
         const bool last = bounce == task_.max_depth;
         const bool by_light = task_.next_event_estimation;
         Float3 light{};
+        mirror_ = active_ & tracer.mirrors(surface_);
         weighed_ = Mask{};
         if (by_light && task_.light_count > 0) {
-            if (task_.multiple_importance) weighed_ = weighed_surfaces(last);
-            light = throughput_ * sample_direct(tracer, task_, surface_, {active_, weighed_},
+            const Mask diffuse = active_ & ~mirror_;
+            if (task_.multiple_importance) weighed_ = diffuse & weighed_surfaces(last);
+            light = throughput_ * sample_direct(tracer, task_, surface_, {diffuse, weighed_},
                                                 random_.pair(1 + 2 * vertex));
         }
-        if (by_light && last && !task_.has_background) active_ &= weighed_;
+        if (by_light && last && !task_.has_background) active_ &= weighed_ | mirror_;
         if (!any(active_)) return light;
         const Ray ray = bounce_ray(random_.pair(2 + 2 * vertex));
         // A direction below the true surface (possible with shading normals) carries nothing.
         active_ &= dot(ray.direction, surface_.normal) > 0.0f;
-        if (by_light && last && !any(weighed_)) return light + find_background(tracer, ray);
+        if (by_light && last && !any(weighed_ | mirror_))
+            return light + find_background(tracer, ray);
         return light + follow(tracer, ray);
     }
 
@@ -222,7 +231,9 @@ class PathPacket {
     }
 
     Ray bounce_ray(Pair u) const {
-        return {ray_origin(surface_), cosine_direction(surface_.shading_normal, u)};
+        const Float3 diffuse = cosine_direction(surface_.shading_normal, u);
+        if (!any(mirror_)) return {ray_origin(surface_), diffuse};
+        return {ray_origin(surface_), select(mirror_, mirror_direction(surface_), diffuse)};
     }
 
     Float3 find_background(Tracer& tracer, const Ray& ray) const {
@@ -242,14 +253,17 @@ class PathPacket {
         return select(traced, throughput * select(surface_.hit, emitted, background), Float3{});
     }
 
-    /// Light of emitters that a bounce has hit, but for what next-event estimation stands for.
+    /// Light of emitters that a bounce has hit, but for what next-event estimation stands for:
+    /// nothing at a mirror.
     Float3 found_light(const Tracer& tracer, const Receiver& from, const Ray& ray) const {
         if (!task_.next_event_estimation) return tracer.emission(surface_);
-        if (!task_.multiple_importance) return Float3{};
+        if (!any(weighed_ | mirror_)) return Float3{};
         const Int emitter = tracer.emitter(surface_);
-        const Mask found = weighed_ & (emitter >= 0);
+        const Mask found = (weighed_ | mirror_) & (emitter >= 0);
         if (!any(found)) return Float3{};
-        const Float weight = bounce_weight(task_, from, ray, surface_, emitter);
+        Float weight = splat(1.0f);
+        if (any(found & ~mirror_))
+            weight = select(mirror_, weight, bounce_weight(task_, from, ray, surface_, emitter));
         return select(found, tracer.emission(surface_) * weight, Float3{});
     }
 
@@ -258,7 +272,8 @@ class PathPacket {
     Surface surface_;
     Float3 throughput_;
     Mask active_;
-    Mask weighed_;  ///< surfaces whose bounce stands for a share of the light of emitters
+    Mask mirror_;   ///< surfaces whose bounce stands for all light
+    Mask weighed_;  ///< those whose bounce stands for a share of the light of emitters
 };
 
 Int lane_numbers() {

@@ -21,7 +21,9 @@ enum SurfaceField {
     kOffset = 7,    ///< by which rays leave the surface, so that they do not hit it again
     kEmission = 8,  ///< 3 numbers: radiance
     kLight = 11,    ///< the bits of its number among the emitters, or of -1
-    kSurfaceFields = 12
+    kMirror = 12,   ///< the bits of -1 where it is one, else of 0
+    kTexture = 13,  ///< the bits of its number among the placed textures, or of -1
+    kSurfaceFields = 14
 };
 
 /// A table with a row per field and a column per surface: quads, triangles, spheres. Rows are
@@ -79,10 +81,21 @@ struct VertexNormals {
     float corner[3][3];
 };
 
+/// A texture's image as it lies on a flat surface: uv is a linear function of the position.
+struct PlacedTexture {
+    const float* texels;  ///< linear RGB, row by row, the top row first
+    std::int32_t width, height;
+    float origin[3];       ///< a corner of the surface
+    float gradient[2][3];  ///< of u and of v
+    float at_origin[2];    ///< u and v there
+};
+
 struct TraceTask {
     const EmbreeScene* embree;
     SurfaceTable surfaces;
     const VertexNormals* vertex_normals;  ///< one per triangle, or null when no mesh has normals
+    const PlacedTexture* textures;        ///< or null when no surface has one
+    bool has_mirrors;
     const LightRecord* lights;
     std::uint32_t light_count;
     LightTree light_tree;

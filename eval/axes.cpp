@@ -5,12 +5,11 @@
 
 #include "eval/budget.h"
 #include "eval/render_options.h"
+#include "filters/methods.h"
 #include "filters/schemes.h"
 
 namespace vecino {
 namespace {
-
-constexpr std::string_view kMethods[] = {"path"};
 
 void require_one_of(std::span<const std::string_view> names, const JsonValue& value) {
     if (std::ranges::find(names, value.string()) == names.end()) value.fail(join(names));
@@ -25,6 +24,17 @@ void require_option(const std::string& key, const JsonValue& value) {
     for (const SchemeOption& row : scheme_options()) {
         if (row.name == key) row.set(parameters, value);
     }
+    MethodParameters method;
+    for (const MethodOption& row : method_options()) {
+        if (row.name == key) row.set(method, value);
+    }
+}
+
+template <class Row>
+std::vector<std::string_view> names_of(std::span<const Row> rows) {
+    std::vector<std::string_view> names;
+    for (const Row& row : rows) names.push_back(row.name);
+    return names;
 }
 
 }  // namespace
@@ -33,22 +43,17 @@ std::vector<std::string_view> cell_keys() {
     std::vector<std::string_view> keys{"scene", "scheme", "method", "image", "budget"};
     for (const RenderOption& row : render_options()) keys.push_back(row.name);
     for (const SchemeOption& row : scheme_options()) keys.push_back(row.name);
+    for (const MethodOption& row : method_options()) keys.push_back(row.name);
     return keys;
-}
-
-std::span<const std::string_view> all_methods() {
-    return kMethods;
 }
 
 void require_cell_value(const std::string& key, const JsonValue& value) {
     if (key == "scene" || key == "image") {
         (void)value.string();
     } else if (key == "scheme") {
-        std::vector<std::string_view> names;
-        for (const Scheme& scheme : all_schemes()) names.push_back(scheme.name);
-        require_one_of(names, value);
+        require_one_of(names_of(all_schemes()), value);
     } else if (key == "method") {
-        require_one_of(kMethods, value);
+        require_one_of(names_of(all_methods()), value);
     } else if (key == "budget") {
         (void)budget_of(value);
     } else {
@@ -88,6 +93,11 @@ bool is_scheme_key(const std::string& key) {
     if (key == "scheme" || key == "budget" || key == "reduction") return true;
     return std::ranges::any_of(scheme_options(),
                                [&](const SchemeOption& row) { return row.name == key; });
+}
+
+bool is_method_key(const std::string& key) {
+    return std::ranges::any_of(method_options(),
+                               [&](const MethodOption& row) { return row.name == key; });
 }
 
 }  // namespace vecino

@@ -16,12 +16,9 @@ namespace vecino {
 /// Values by key. Refers to the document that it was read from.
 using Axes = std::map<std::string, std::vector<JsonValue>>;
 
-/// "scene", "scheme", "method", "image", "budget" and every row of the option tables of renders and
-/// schemes.
+/// "scene", "scheme", "method", "image", "budget" and every row of the option tables of renders,
+/// schemes and render methods.
 std::vector<std::string_view> cell_keys();
-
-/// Ways to make an image that are no scheme: they render. Allowed values of "method".
-std::span<const std::string_view> all_methods();
 
 /// Throws Error(usage) unless the value may stand at that key. Precondition: key is a cell key.
 void require_cell_value(const std::string& key, const JsonValue& value);
@@ -37,5 +34,8 @@ std::vector<JsonValue> listed(const std::string& key, const JsonValue& value);
 
 /// Whether only schemes read this key, so that it says nothing about a method.
 bool is_scheme_key(const std::string& key);
+
+/// Whether only render methods read this key, so that it says nothing about a scheme.
+bool is_method_key(const std::string& key);
 
 }  // namespace vecino

@@ -43,7 +43,7 @@ SourcedImage run_source(const Cell& cell, const CellInput& input, const RunDirec
         std::filesystem::absolute(directory.file_in(folder, "input.exr"));
     values["output"] = output.string();
     values["input"] = frame.string();
-    if (source.reads_frame()) save_frame(input.traced->frame, frame.string());
+    if (source.reads_frame()) save_frame(input.traced->render.frame, frame.string());
     ExternalCommand command{{}, folder_of(*input.matrix), directory.file_in(folder, "command.log")};
     for (const std::string& argument : source.command)
         command.arguments.push_back(fill_template(argument, values));
@@ -78,15 +78,16 @@ BuiltImage build_image(const Cell& cell, const CellInput& input, const RunDirect
         case CellKind::image:
             return image_from_elsewhere(cell, input, directory);
         case CellKind::scheme:
-            return reconstruct_timed(cell, input.traced->frame, input.matrix->repeat);
+            return reconstruct_timed(cell, input.traced->render.frame, input.matrix->repeat);
         case CellKind::blocky_ceiling: {
             const Extent low = reduced(cell.settings.size, cell.settings.reduction);
             return {{.image = blocky_ceiling(input.reference->image, low)}, 0};
         }
         case CellKind::path:
+        case CellKind::method:
             break;
     }
-    return {{.image = input.traced->frame.radiance}, 0};
+    return {{.image = input.traced->render.frame.radiance}, input.traced->reconstruct_s};
 }
 
 /// Of a ceiling, a region's metrics are those of the best image for that region.
@@ -131,7 +132,8 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
     bool is_finite = false;
     row["metrics"] = compare_cell(cell, built.made.image, input, is_finite);
     const double write_s = save(built.made.image, cell, directory);
-    RenderStatistics s = input.traced == nullptr ? RenderStatistics{} : input.traced->statistics;
+    RenderStatistics s =
+        input.traced == nullptr ? RenderStatistics{} : input.traced->render.statistics;
     s.trace_s += built.elsewhere_s;
     // What took no time that is known did not take that of writing alone either.
     const bool is_timed = s.trace_s + built.reconstruct_s > 0;
@@ -142,6 +144,7 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
                      {"fallback_pixels", built.made.fallback_pixels},
                      {"non_finite_pixels", built.made.non_finite_pixels}};
     if (input.traced != nullptr) row["threads"] = s.threads;
+    if (cell.kind == CellKind::method) row["facts"] = input.traced->facts;
     is_finite = is_finite && built.made.non_finite_pixels == 0;
     row["status"] = is_finite ? "ok" : "failed";
     if (!is_finite) row["reason"] = "non-finite pixels";

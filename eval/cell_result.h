@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 
-#include "core/render.h"
 #include "eval/matrix.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
@@ -20,7 +19,7 @@ constexpr double kRepeatBelow_s = 0.5;
 /// What the cells of a frame share.
 struct CellInput {
     const Matrix* matrix = nullptr;
-    const Render* traced = nullptr;  ///< times are medians; null where no frame is read
+    const MethodRender* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
 };
 

@@ -37,6 +37,15 @@ std::string command_hash(const Matrix& matrix, const Cell& cell) {
 
 }  // namespace
 
+std::string scene_hash(const std::string& path, const Scene& scene) {
+    std::string hash = text_hash(read_file(path));
+    for (const Material& material : scene.materials) {
+        if (material.albedo_texture != nullptr)
+            hash = text_hash(hash + text_hash(read_file(material.albedo_texture->file)));
+    }
+    return hash;
+}
+
 std::string reference_path(const Matrix& matrix, const Cell& cell) {
     return sourced_path(matrix, matrix.reference_source->file,
                         placeholders_of(cell.scene, cell.settings));

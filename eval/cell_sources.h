@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The files behind a cell that vecino does not make: what they hold now, told by hashes.
+// The files behind a cell: what they hold now, told by hashes.
 #pragma once
 
 #include <string>
 
+#include "core/scene.h"
 #include "eval/matrix.h"
 
 namespace vecino {
+
+/// Of a scene file and of the textures that its scene is made with. Throws Error(file).
+std::string scene_hash(const std::string& path, const Scene& scene);
 
 /// Precondition: the matrix names a reference file.
 std::string reference_path(const Matrix& matrix, const Cell& cell);

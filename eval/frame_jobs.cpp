@@ -19,7 +19,7 @@ bool reads_frame(const Cell& cell) {
 /// Ceilings of one reference stand together: it is all that is traced for them. A measured budget
 /// shares no frame with another, whatever stands for it until it is measured: estimates count both.
 std::string job_key(const Cell& cell) {
-    if (cell.kind == CellKind::image) return cell.name;
+    if (cell.kind == CellKind::image || cell.kind == CellKind::method) return cell.name;
     const std::string measured = cell.budget == Budget::equal_time ? " measured" : "";
     if (cell.kind != CellKind::blocky_ceiling)
         return frame_json(cell.scene, cell.settings).dump() + measured;

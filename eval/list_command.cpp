@@ -5,6 +5,7 @@
 #include "eval/commands.h"
 #include "eval/matrix.h"
 #include "eval/metrics.h"
+#include "filters/methods.h"
 #include "filters/schemes.h"
 
 namespace vecino {
@@ -26,7 +27,13 @@ nlohmann::json scheme_rows() {
 }
 
 nlohmann::json method_rows() {
-    return {{{"name", "path"}, {"summary", "path tracing of every pixel"}}};
+    nlohmann::json rows = nlohmann::json::array();
+    for (const Method& method : all_methods()) {
+        nlohmann::json row{{"name", method.name}, {"summary", method.summary}};
+        row["options"] = std::vector<std::string>(method.options.begin(), method.options.end());
+        rows.push_back(row);
+    }
+    return rows;
 }
 
 nlohmann::json metric_rows() {

@@ -64,6 +64,7 @@ bool decides(const Cell& cell, std::string_view option) {
         case CellKind::image:
             return reads(cell, option);
         case CellKind::path:
+        case CellKind::method:
             return option != "reduction";
         case CellKind::scheme:
             break;
@@ -116,7 +117,11 @@ class Expansion {
                 return is_scheme_key(axis.first) && !(is_image && axis.first == "reduction");
             });
         }
-        if (own.contains("scheme") || is_image) axes.erase("method");
+        if (own.contains("scheme") || is_image) {
+            std::erase_if(axes, [](const auto& axis) {
+                return axis.first == "method" || is_method_key(axis.first);
+            });
+        }
         if (own.contains("scheme") || own.contains("method")) axes.erase("image");
         for (const auto& [key, values] : own) axes.insert_or_assign(key, values);
         for_each_assignment(axes, [&](const Assignment& assignment) { add(assignment); });
@@ -136,15 +141,32 @@ class Expansion {
         path.against = path.group;
         const std::string against = path.group;
         push(std::move(path));
-        if (assignment.contains("method")) return;
-        const auto scheme = value(assignment, "scheme");
-        if (!scheme && value(assignment, "method")) return;
+        const auto scheme =
+            assignment.contains("method") ? std::nullopt : value(assignment, "scheme");
+        const auto method = value(assignment, "method");
+        if (!scheme && method)
+            return add_method(assignment, find_method(method->string()), against);
         if (!scheme)
             json_.at("axes").fail("no key \"scheme\"", "\"scheme\" among the axes or in fixed");
         push_ceiling(assignment);
         Cell cell = make_cell(assignment, CellKind::scheme);
         cell.scheme = &find_scheme(scheme->string());
         read_scheme_options(cell, assignment);
+        set_name(cell, assignment);
+        cell.against = against;
+        push(std::move(cell));
+    }
+
+    void add_method(const Assignment& assignment, const Method& method,
+                    const std::string& against) {
+        if (&method == &all_methods().front()) return;  // path tracing is there already
+        Cell cell = make_cell(assignment, CellKind::method);
+        cell.render_method = &method;
+        for (const MethodOption& row : method_options()) {
+            if (!method.reads(row.name)) continue;
+            if (const auto given = value(assignment, std::string(row.name)))
+                row.set(cell.method_parameters, *given);
+        }
         set_name(cell, assignment);
         cell.against = against;
         push(std::move(cell));
@@ -183,7 +205,8 @@ class Expansion {
                          .lexically_normal()
                          .string();
         for (const RenderOption& row : render_options()) {
-            if (row.name == "reduction" && kind == CellKind::path) continue;
+            const bool is_whole = kind == CellKind::path || kind == CellKind::method;
+            if (row.name == "reduction" && is_whole) continue;
             if (const auto given = value(assignment, std::string(row.name)))
                 row.set(cell.settings, *given);
         }
@@ -230,6 +253,11 @@ class Expansion {
             }
             if (cell.budget != Budget::same_spp) name += "." + budget_name(cell.budget);
         }
+        for (const MethodOption& row : method_options()) {
+            if (cell.render_method == nullptr || !cell.render_method->reads(row.name)) continue;
+            if (assignment.contains(std::string(row.name)))
+                name += "." + row.slug(cell.method_parameters);
+        }
         append_render_slugs(name, assignment);
         cell.group = name;
         cell.name = name + ".s" + std::to_string(cell.settings.seed);
@@ -264,6 +292,7 @@ std::string stem(const std::string& path) {
 std::string Cell::method() const {
     if (kind == CellKind::blocky_ceiling) return "blocky_ceiling";
     if (kind == CellKind::image) return image->name;
+    if (kind == CellKind::method) return std::string(render_method->name);
     return kind == CellKind::path ? "path" : std::string(scheme->name);
 }
 
@@ -280,6 +309,10 @@ nlohmann::json Cell::parameters_json() const {
     if (kind == CellKind::blocky_ceiling) return json;
     json["spp_asked"] = spp_asked;
     json["budget"] = budget_name(budget);
+    for (const MethodOption& row : method_options()) {
+        if (render_method != nullptr && render_method->reads(row.name))
+            json[std::string(row.name)] = row.get(method_parameters);
+    }
     if (scheme == nullptr) return json;
     for (const SchemeOption& row : scheme_options()) {
         if (scheme->reads(row.name)) json[std::string(row.name)] = row.slug(parameters);

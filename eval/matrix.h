@@ -13,19 +13,22 @@
 #include "core/render.h"
 #include "eval/budget.h"
 #include "eval/image_source.h"
+#include "filters/methods.h"
 #include "filters/schemes.h"
 
 namespace vecino {
 
 enum class CellKind {
     path,            ///< plain path tracing of every pixel
+    method,          ///< another render method
     scheme,          ///< a low-resolution frame, rebuilt
     blocky_ceiling,  ///< the best that is constant per low-resolution pixel, from the reference
     image,           ///< one that vecino does not make: a file, or what a command makes
 };
 
-/// One thing to measure: a scheme with its parameters on a scene, plain path tracing that it is
-/// held against, the limit of what such schemes can reach, or an image from elsewhere.
+/// One thing to measure: a scheme or a render method with its parameters on a scene, plain path
+/// tracing that it is held against, the limit of what such schemes can reach, or an image from
+/// elsewhere.
 struct Cell {
     std::string name;     ///< e.g. cornell_sphere.distance3d_normal.f2.w7.s1
     std::string group;    ///< the name without its seed: cells of a group are averaged
@@ -33,15 +36,17 @@ struct Cell {
     std::string scene;    ///< path of the scene file; of images that need none, any name
     CellKind kind = CellKind::path;
     const Scheme* scheme = nullptr;            ///< null unless it is a scheme
+    const Method* render_method = nullptr;     ///< null unless it is a method other than path
     std::shared_ptr<const ImageSource> image;  ///< null unless it is an image from elsewhere
     bool is_against_render = true;             ///< which has the cell's size and depth; else a file
     Budget budget = Budget::same_spp;
     int spp_asked =
         0;  ///< of path tracing at full resolution; settings.spp is what the budget gave
-    SchemeParameters parameters;
-    RenderSettings settings;  ///< of the frame that the cell reads
+    SchemeParameters parameters;         ///< of a scheme
+    MethodParameters method_parameters;  ///< of a render method
+    RenderSettings settings;             ///< of the frame that the cell reads
 
-    /// The scheme's or the image source's name, "path" or "blocky_ceiling".
+    /// The scheme's, render method's or image source's name, "path" or "blocky_ceiling".
     [[nodiscard]] std::string method() const;
     /// Everything that decides the result, for results.jsonl and for telling a finished cell from a
     /// stale one.

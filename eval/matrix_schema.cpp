@@ -9,6 +9,7 @@
 #include "eval/image_source.h"
 #include "eval/metrics.h"
 #include "eval/render_options.h"
+#include "filters/methods.h"
 #include "filters/schemes.h"
 
 namespace vecino {
@@ -27,8 +28,9 @@ json scheme_schema() {
 }
 
 json method_schema() {
-    const auto names = all_methods();
-    return {{"enum", std::vector<std::string>(names.begin(), names.end())}};
+    json schema;
+    for (const Method& method : all_methods()) schema["enum"].push_back(method.name);
+    return schema;
 }
 
 json budget_schema() {
@@ -53,6 +55,7 @@ json cell_schema() {
     };
     for (const RenderOption& row : render_options()) add(row);
     for (const SchemeOption& row : scheme_options()) add(row);
+    for (const MethodOption& row : method_options()) add(row);
     return schema;
 }
 

@@ -82,7 +82,7 @@ void print_result(const MergeArguments& arguments, const std::vector<PartHeader>
                                {"first_sample", samples.begin},
                                {"last_sample", samples.end - 1},
                                {"whole", is_whole(parts)}};
-        const nlohmann::json counts = render_json(statistics, 0);
+        const nlohmann::json counts = render_json({.render = {{}, statistics}}, 0);
         for (const char* name :
              {"samples", "rays", "simd_width", "dropped_samples", "non_finite_pixels"}) {
             json[name] = counts.at(name);

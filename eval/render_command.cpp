@@ -10,12 +10,13 @@
 #include "core/part_file.h"
 #include "core/render.h"
 #include "core/timing.h"
+#include "eval/cell_sources.h"
 #include "eval/commands.h"
 #include "eval/part_metadata.h"
 #include "eval/progress.h"
-#include "eval/reference_store.h"
 #include "eval/render_metadata.h"
 #include "eval/render_options.h"
+#include "filters/methods.h"
 
 namespace vecino {
 namespace {
@@ -24,6 +25,8 @@ struct RenderArguments {
     std::string scene;
     std::string output;
     std::map<std::string, std::string> options;  ///< by matrix key, as given
+    std::string method = "path";
+    std::map<std::string, std::string> method_options;  ///< likewise
     std::string planes;
     std::string samples;  ///< A:B, or empty
     int threads = 0;
@@ -35,14 +38,44 @@ bool is_exr(const std::string& path) {
     return std::filesystem::path(path).extension() == ".exr";
 }
 
+/// Sets what was given on the command line.
+template <class Parameters>
+void set_given(std::span<const OptionRow<Parameters>> rows,
+               const std::map<std::string, std::string>& texts, Parameters& parameters) {
+    for (const OptionRow<Parameters>& row : rows) {
+        const auto given = texts.find(std::string(row.name));
+        if (given == texts.end() || given->second.empty()) continue;
+        const nlohmann::json value = option_value(given->second);
+        row.set(parameters, JsonValue(value, "command line", std::string(row.flag)));
+    }
+}
+
+MethodParameters method_parameters_of(const RenderArguments& arguments) {
+    MethodParameters parameters;
+    set_given(method_options(), arguments.method_options, parameters);
+    return parameters;
+}
+
+/// An option that the method does not read would be given in vain.
+void require_read_options(const RenderArguments& arguments, const Method& method) {
+    for (const MethodOption& row : method_options()) {
+        const auto given = arguments.method_options.find(std::string(row.name));
+        const bool is_given = given != arguments.method_options.end() && !given->second.empty();
+        if (!is_given || method.reads(row.name)) continue;
+        std::string readers;
+        for (const Method& other : all_methods()) {
+            if (other.reads(row.name))
+                readers += (readers.empty() ? "" : ", ") + std::string(other.name);
+        }
+        throw Error(ExitCode::usage, "command line: " + std::string(row.flag) +
+                                         ": found with --method " + std::string(method.name) +
+                                         ", allowed: with " + readers);
+    }
+}
+
 RenderSettings settings_of(const RenderArguments& arguments) {
     RenderSettings settings;
-    for (const RenderOption& row : render_options()) {
-        const auto given = arguments.options.find(std::string(row.name));
-        if (given == arguments.options.end() || given->second.empty()) continue;
-        const nlohmann::json value = option_value(given->second);
-        row.set(settings, JsonValue(value, "command line", std::string(row.flag)));
-    }
+    set_given(render_options(), arguments.options, settings);
     settings.threads = arguments.threads;
     settings.simd_width = arguments.simd_width;
     settings.planes = is_exr(arguments.output) ? Planes::all() : Planes{Plane::radiance};
@@ -67,14 +100,15 @@ SampleInterval interval_of(const std::string& text, int spp) {
     return samples;
 }
 
-void print_result(const RenderArguments& arguments, const RenderStatistics& s,
+void print_result(const RenderArguments& arguments, const MethodRender& result,
                   const std::string& what, double write_s) {
+    const RenderStatistics& s = result.render.statistics;
     if (arguments.json) {
-        std::printf("%s\n", render_json(s, write_s).dump().c_str());
+        std::printf("%s\n", render_json(result, write_s).dump().c_str());
         return;
     }
     std::printf("%s: %s, %.2f s, %.2f Msamples/s on %d threads\n", arguments.output.c_str(),
-                what.c_str(), s.scene_s + s.trace_s + write_s,
+                what.c_str(), s.scene_s + s.trace_s + result.reconstruct_s + write_s,
                 s.trace_s > 0 ? static_cast<double>(s.samples) / s.trace_s * 1e-6 : 0.0, s.threads);
 }
 
@@ -88,20 +122,25 @@ auto with_progress(const Scene& scene, const Trace& trace) {
 
 ExitCode render_image(const RenderArguments& arguments, const RenderSettings& settings,
                       const Scene& scene) {
-    const Render result = with_progress(
-        scene, [&](const Progress& progress) { return render(scene, settings, progress); });
-    const RenderStatistics& s = result.statistics;
+    const Method& method = find_method(arguments.method);
+    const MethodRequest request{scene, settings, method_parameters_of(arguments)};
+    const MethodRender result = with_progress(
+        scene, [&](const Progress& progress) { return render(method, request, progress); });
+    const RenderStatistics& s = result.render.statistics;
+    const Frame& frame = result.render.frame;
+    Metadata metadata =
+        render_metadata(arguments.scene, settings, s.scene_s + s.trace_s + result.reconstruct_s);
+    describe_method(method, request.parameters, metadata);
     const Stopwatch write_watch;
-    save_frame(result.frame, arguments.output,
-               render_metadata(arguments.scene, settings, s.scene_s + s.trace_s));
-    print_result(arguments, s, size_text(result.frame.size()), write_watch.seconds());
+    save_frame(frame, arguments.output, metadata);
+    print_result(arguments, result, size_text(frame.size()), write_watch.seconds());
     return report_non_finite(s, arguments.output);
 }
 
 ExitCode render_samples(const RenderArguments& arguments, const RenderSettings& settings,
                         const Scene& scene) {
     const SampleInterval samples = interval_of(arguments.samples, settings.spp);
-    const std::string hash = text_hash(read_file(arguments.scene));
+    const std::string hash = scene_hash(arguments.scene, scene);
     const PartRender result = with_progress(scene, [&](const Progress& progress) {
         return render_part(scene, settings, samples, progress);
     });
@@ -110,7 +149,7 @@ ExitCode render_samples(const RenderArguments& arguments, const RenderSettings& 
     describe_part(hash, s, metadata);
     const Stopwatch write_watch;
     save_part(result.part, arguments.output, metadata);
-    print_result(arguments, s,
+    print_result(arguments, {.render = {{}, s}},
                  size_text(result.part.sums.size()) + ", samples " + interval_text(samples) +
                      " of " + std::to_string(settings.spp),
                  write_watch.seconds());
@@ -120,6 +159,9 @@ ExitCode render_samples(const RenderArguments& arguments, const RenderSettings& 
 ExitCode run_render(const RenderArguments& arguments) {
     require_writable_extension(arguments.output);
     const RenderSettings settings = settings_of(arguments);
+    const Method& method = find_method(arguments.method);
+    require_read_options(arguments, method);
+    (void)method_parameters_of(arguments);  // before the scene is read
     const bool in_part = !arguments.samples.empty();
     if (in_part) {
         interval_of(arguments.samples, settings.spp);  // before the scene is read
@@ -128,11 +170,22 @@ ExitCode run_render(const RenderArguments& arguments) {
                                              ": found another extension, allowed with --samples: "
                                              ".exr");
         }
+        if (&method != &all_methods().front()) {
+            throw Error(ExitCode::usage, "command line: --method: found \"" + arguments.method +
+                                             "\", allowed with --samples: " +
+                                             std::string(all_methods().front().name));
+        }
     }
     const Scene scene = load_scene(arguments.scene);
     require_writable(arguments.output);
     return in_part ? render_samples(arguments, settings, scene)
                    : render_image(arguments, settings, scene);
+}
+
+std::string method_names() {
+    std::vector<std::string_view> names;
+    for (const Method& method : all_methods()) names.push_back(method.name);
+    return join(names);
 }
 
 }  // namespace
@@ -145,6 +198,10 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->required();
     for (const RenderOption& row : render_options()) {
         add_table_option(*command, row, arguments->options[std::string(row.name)]);
+    }
+    command->add_option("--method", arguments->method, method_names());
+    for (const MethodOption& row : method_options()) {
+        add_table_option(*command, row, arguments->method_options[std::string(row.name)]);
     }
     command->add_option("--planes", arguments->planes, "all, or a list such as radiance,normal,id")
         ->check(not_empty());

@@ -16,8 +16,10 @@ struct AttributeText {
 }  // namespace
 
 Metadata render_metadata(const std::string& scene, const RenderSettings& settings, double seconds) {
-    Metadata metadata{
-        {"scene", scene}, {"version", VECINO_VERSION}, {"seconds", static_cast<float>(seconds)}};
+    Metadata metadata{{"scene", scene},
+                      {"version", VECINO_VERSION},
+                      {"seconds", static_cast<float>(seconds)},
+                      {"method", std::string(all_methods().front().name)}};
     for (const RenderOption& row : render_options()) {
         const nlohmann::json value = row.get(settings);
         const std::string key = row.name == "max_depth" ? "depth" : std::string(row.name);
@@ -30,17 +32,25 @@ Metadata render_metadata(const std::string& scene, const RenderSettings& setting
     return metadata;
 }
 
+void describe_method(const Method& method, const MethodParameters& parameters, Metadata& metadata) {
+    metadata["method"] = std::string(method.name);
+    for (const MethodOption& row : method_options()) {
+        if (method.reads(row.name)) metadata[std::string(row.name)] = row.get(parameters).dump();
+    }
+}
+
 std::string attribute_text(const Metadata& metadata, const std::string& name) {
     const auto found = metadata.find(name);
     return found == metadata.end() ? "none" : std::visit(AttributeText{}, found->second);
 }
 
-nlohmann::json render_json(const RenderStatistics& s, double write_s) {
+nlohmann::json render_json(const MethodRender& result, double write_s) {
+    const RenderStatistics& s = result.render.statistics;
     return {{"time_s",
-             {{"total", s.scene_s + s.trace_s + write_s},
+             {{"total", s.scene_s + s.trace_s + result.reconstruct_s + write_s},
               {"scene", s.scene_s},
               {"trace", s.trace_s},
-              {"reconstruct", 0.0},
+              {"reconstruct", result.reconstruct_s},
               {"write", write_s}}},
             {"samples", s.samples},
             {"rays", s.rays},
@@ -48,7 +58,8 @@ nlohmann::json render_json(const RenderStatistics& s, double write_s) {
             {"threads", s.threads},
             {"simd_width", s.simd_width},
             {"dropped_samples", s.dropped_samples},
-            {"non_finite_pixels", s.non_finite_pixels}};
+            {"non_finite_pixels", s.non_finite_pixels},
+            {"facts", result.facts}};
 }
 
 ExitCode report_non_finite(const RenderStatistics& s, const std::string& output) {

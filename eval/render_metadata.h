@@ -8,18 +8,22 @@
 
 #include "core/error.h"
 #include "core/image_io.h"
-#include "core/render.h"
+#include "filters/methods.h"
 
 namespace vecino {
 
-/// Scene, version, seconds, and every option of a render under its name ("depth" for max_depth).
+/// Of path tracing: scene, version, seconds, method, and every option of a render under its name
+/// ("depth" for max_depth).
 Metadata render_metadata(const std::string& scene, const RenderSettings& settings, double seconds);
+
+/// Of another method: its name and those of its options that it reads.
+void describe_method(const Method& method, const MethodParameters& parameters, Metadata& metadata);
 
 /// An attribute as text, for errors.
 std::string attribute_text(const Metadata& metadata, const std::string& name);
 
 /// Times and counts of a render as `--json` prints them.
-nlohmann::json render_json(const RenderStatistics& statistics, double write_s);
+nlohmann::json render_json(const MethodRender& result, double write_s);
 
 /// Says on stderr what was not finite: nothing, a warning, or an error with the code that it has.
 ExitCode report_non_finite(const RenderStatistics& statistics, const std::string& output);

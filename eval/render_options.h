@@ -8,21 +8,12 @@
 #include <string>
 #include <string_view>
 
-#include "core/json_read.h"
+#include "core/option_row.h"
 #include "core/render.h"
 
 namespace vecino {
 
-struct RenderOption {
-    std::string_view name;     ///< key in a matrix
-    std::string_view flag;     ///< on the command line
-    std::string_view allowed;  ///< for help
-    std::string_view summary;
-    void (*set)(RenderSettings&, const JsonValue&);  ///< throws Error(usage)
-    nlohmann::json (*get)(const RenderSettings&);    ///< as it stands in results
-    std::string (*slug)(const RenderSettings&);      ///< as it stands in a cell's name
-    nlohmann::json (*schema)();                      ///< the JSON Schema of what `set` reads
-};
+using RenderOption = OptionRow<RenderSettings>;
 
 /// Options that make the image what it is; all may be axes of a matrix.
 std::span<const RenderOption> render_options();

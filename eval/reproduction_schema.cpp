@@ -7,6 +7,7 @@
 #include "eval/axes.h"
 #include "eval/matrix_schema.h"
 #include "eval/regions.h"
+#include "filters/methods.h"
 #include "filters/schemes.h"
 
 namespace vecino {
@@ -24,7 +25,7 @@ constexpr IntegerKind kSpp{1, std::numeric_limits<int>::max()};
 /// One of the methods that results have.
 json method_schema() {
     json schema{{"enum", {"blocky_ceiling"}}};
-    for (const std::string_view method : all_methods()) schema["enum"].push_back(method);
+    for (const Method& method : all_methods()) schema["enum"].push_back(method.name);
     for (const Scheme& scheme : all_schemes()) schema["enum"].push_back(scheme.name);
     return schema;
 }

@@ -137,12 +137,13 @@ class Runner {
     void load_scene_of(const Cell& cell) {
         if (traces_scene(matrix_, cell)) {
             if (scenes_.contains(cell.scene)) return;
-            scenes_.emplace(cell.scene, load_scene(cell.scene));
-        } else if (!cell.image->reads("scene_file")) {
+            const auto scene = scenes_.emplace(cell.scene, load_scene(cell.scene)).first;
+            scene_hashes_[cell.scene] = scene_hash(cell.scene, scene->second);
+        } else if (cell.image->reads("scene_file")) {
+            scene_hashes_.try_emplace(cell.scene, text_hash(read_file(cell.scene)));
+        } else {
             scene_hashes_.try_emplace(cell.scene);  // a name alone
-            return;
         }
-        scene_hashes_[cell.scene] = text_hash(read_file(cell.scene));
     }
 
     CellState state_of(const Cell& cell) const {
@@ -238,11 +239,13 @@ class Runner {
         return total;
     }
 
-    Render render_with_progress(const std::string& scene, const RenderSettings& settings,
-                                const std::string& label) {
+    /// Of a render that counts as path tracing with such settings does.
+    template <class Trace>
+    auto with_progress(const std::string& label, const RenderSettings& settings,
+                       const Trace& trace) {
         bar_->label(matrix_.name + ": " + label);
         const double samples = traced_samples(settings);
-        Render result = render(scenes_.at(scene), settings, [&](double done) {
+        auto result = trace([&](double done) {
             return bar_->update((done_samples_ + done * samples) / total_samples_);
         });
         done_samples_ += samples;
@@ -258,7 +261,10 @@ class Runner {
             settings.planes = reference_planes();
             settings.simd_width = simd_width_;
             return reference_halves(settings, [&](const RenderSettings& half) {
-                return render_with_progress(cell.scene, half, stem(cell.scene) + " reference")
+                return with_progress(stem(cell.scene) + " reference", half,
+                                     [&](const Progress& progress) {
+                                         return render(scenes_.at(cell.scene), half, progress);
+                                     })
                     .frame;
             });
         });
@@ -273,28 +279,34 @@ class Runner {
         });
     }
 
-    Render trace(const FrameJob& job) {
+    MethodRender trace(const FrameJob& job) {
         const Cell& first = *job.cells.front();
-        const std::string label = first.name;
-        std::vector<double> scene_s;
-        std::vector<double> trace_s;
-        Render result;
+        const Method& method =
+            first.kind == CellKind::method ? *first.render_method : all_methods().front();
+        const MethodRequest request{scenes_.at(first.scene), job.settings, first.method_parameters};
+        const auto trace_once = [&](const Progress& progress) {
+            return vecino::render(method, request, progress);
+        };
+        std::vector<double> scene_s, trace_s, reconstruct_s;
+        MethodRender result;
         for (int i = 0; i < matrix_.repeat; ++i) {
-            result = i == 0 ? render_with_progress(first.scene, job.settings, label)
-                            : render(scenes_.at(first.scene), job.settings);
-            scene_s.push_back(result.statistics.scene_s);
-            trace_s.push_back(result.statistics.trace_s);
-            if (result.statistics.trace_s > kRepeatBelow_s) break;
+            result = i == 0 ? with_progress(first.name, job.settings, trace_once) : trace_once({});
+            const RenderStatistics& s = result.render.statistics;
+            scene_s.push_back(s.scene_s);
+            trace_s.push_back(s.trace_s);
+            reconstruct_s.push_back(result.reconstruct_s);
+            if (s.trace_s + result.reconstruct_s > kRepeatBelow_s) break;
         }
-        result.statistics.scene_s = median(scene_s);
-        result.statistics.trace_s = median(trace_s);
+        result.render.statistics.scene_s = median(scene_s);
+        result.render.statistics.trace_s = median(trace_s);
+        result.reconstruct_s = median(reconstruct_s);
         return result;
     }
 
     void run_job(const FrameJob& job) {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
         CellInput input{&matrix_, nullptr, &reference_of(*job.cells.front())};
-        Render traced;
+        MethodRender traced;
         if (job.traces) {
             traced = trace(job);
             input.traced = &traced;

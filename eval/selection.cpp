@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 
 std::vector<std::string_view> method_names() {
     std::vector<std::string_view> names{"blocky_ceiling"};
-    for (const std::string_view method : all_methods()) names.push_back(method);
+    for (const Method& method : all_methods()) names.push_back(method.name);
     for (const Scheme& scheme : all_schemes()) names.push_back(scheme.name);
     return names;
 }
@@ -38,6 +38,12 @@ Json canonical(const std::string& key, const JsonValue& value) {
         if (row.name != key || key == "window") continue;
         row.set(parameters, value);
         return row.slug(parameters);
+    }
+    for (const MethodOption& row : method_options()) {
+        MethodParameters parameters;
+        if (row.name != key) continue;
+        row.set(parameters, value);
+        return row.get(parameters);
     }
     return value.raw();
 }

@@ -57,6 +57,7 @@ Cluster PixelClusters::first_cluster(int x, int y) const {
     Cluster to{};
     to.object = from.object[i];
     to.surface = from.surface[i];
+    to.mirrors = from.mirrors[i];
     to.count = from.count[i];
     to.shadow_count = from.shadow_count[i];
     for (int k = 0; k < 3; ++k) {

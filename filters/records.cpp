@@ -149,11 +149,8 @@ Record make_record(const TraceTask& task, const Candidate& candidate, int cell,
     record.normal_world = vector(light.normal);
     record.x = static_cast<float>(candidate.seed.x) + 0.5f;
     record.y = static_cast<float>(candidate.seed.y) + 0.5f;
-    const glm::vec3 view = vector(task.camera_origin) - record.position_world;
-    const float distance = glm::length(view);
-    record.footprint_world = distance * pixel_width(task) * static_cast<float>(cell);
-    record.grazing_cosine =
-        std::max(std::abs(glm::dot(view, record.normal_world)) / distance, kLeastGrazing);
+    record.footprint_world = light.distance * pixel_width(task) * static_cast<float>(cell);
+    record.grazing_cosine = std::max(light.cosine, kLeastGrazing);
     record.nearness = light.inverse_distance;
     record.least_cosine = candidate.least_cosine;
     for (std::size_t c = 0; c < 3; ++c) {

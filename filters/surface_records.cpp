@@ -172,7 +172,8 @@ class Band {
         const auto surface = static_cast<std::uint32_t>(cluster.surface);
         const bool simple =
             surface < tracer_.task.first_triangle || surface >= tracer_.task.first_sphere;
-        const bool alone = (pixel.needs & kNeedsCoverage) == 0 && list.count == 1;
+        const bool alone =
+            (pixel.needs & kNeedsCoverage) == 0 && list.count == 1 && cluster.mirrors == 0;
         return alone && cluster.object >= 0 && simple ? cluster.surface : -1;
     }
 
@@ -219,14 +220,17 @@ class Band {
         clusters_.visit(at.x, at.y, [&](const Cluster& cluster) {
             const ClusterMeans means = means_of(cluster);
             samples += cluster.count;
-            values.emission += means.emission * cluster.count;
             const int k = number++;
-            if (cluster.object < 0 || tracer_.task.max_depth < 1) return;
+            // A mirror is a bounce like any other.
+            glm::vec3* const planes[] = {&values.emission, &values.direct, &values.indirect};
+            *planes[std::min(cluster.mirrors, 2)] += means.emission * cluster.count;
+            glm::vec3& direct = *planes[std::min(cluster.mirrors + 1, 2)];
+            if (cluster.object < 0 || cluster.mirrors >= tracer_.task.max_depth) return;
             const glm::vec3 reflected = means.albedo * cluster.count;
-            values.direct += reflected * direct_light(tracer_.task, cluster);
+            direct += reflected * direct_light(tracer_.task, cluster);
             if (!has_records()) return;
             const RecordValue light = light_at(cluster, means, at, k);
-            values.direct += reflected * glm::vec3(light[3], light[4], light[5]);
+            direct += reflected * glm::vec3(light[3], light[4], light[5]);
             values.indirect += reflected * glm::vec3(light[0], light[1], light[2]);
         });
         const float share = 1.0f / samples;

@@ -70,7 +70,7 @@ TEST_CASE("mistakes of render", "[bad_input]") {
         {"no scene", "render", 64, "required"},
         {"no output", "render scene.json", 64, "-o is required"},
         {"two scenes", "render scene.json scene.json -o old.exr", 64, "scene.json"},
-        {"a flag that is not built", to + "--method path", 64, "--method"},
+        {"an unknown method", to + "--method best", 64, "method: found \"best\", allowed: path"},
         {"a flag that is not built", to + "--time-budget 1", 64, "--time-budget"},
         {"a flag of upsample", to + "--window 3", 64, "--window"},
         {"a flag without its value", to + "--spp", 64, "--spp"},
