@@ -453,6 +453,7 @@ inline void sample_packet(Tracer& tracer, const TraceTask& task, const PixelSamp
     look_at_lights(
         tracer, task, random,
         [&](int light) {
+            if (range.half_shadow) return active;
             Mask asked{};
             for (int k = 0; k < list.count; ++k) {
                 if (is_unclear(list.clusters[k], light)) asked |= slot == k;

@@ -97,6 +97,8 @@ struct PixelSamples {
     std::uint32_t begin, end;
     /// The surface that all of them hit, if it is known beforehand; else -1.
     std::int32_t known_surface;
+    /// Whether light is looked at by all; else by those whose cluster is not clear about it.
+    bool half_shadow;
 };
 
 /// Paths from the surface that a sample of a pixel hits.
@@ -127,8 +129,7 @@ struct RecordKernel {
     /// Writes the hits of the first sample of each pixel to first_hits unless that is null.
     std::uint64_t (*trace_pilot)(const TraceTask&, const PilotRange&, PilotBlock&, PilotSpill&,
                                  FirstHitRecord* first_hits);
-    /// Adds samples to what is known of a pixel. Light is looked at where it is not clear from the
-    /// samples before.
+    /// Adds samples to what is known of a pixel.
     std::uint64_t (*add_samples)(const TraceTask&, const PixelSamples&, ClusterList&);
     std::uint64_t (*gather)(const TraceTask&, const RecordRange&, RecordLight&);
 };

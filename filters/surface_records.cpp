@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <ctime>  // DEV
+#include <cstdlib>  // DEV
 #include <cmath>
 #include <mutex>
 #include <string>
@@ -72,9 +74,11 @@ class Band {
 
     void run(StagedRender& out, const std::function<void()>& checkpoint) {
         const auto timed = [&](double& seconds, const auto& stage) {
+            static const bool cpu = getenv("SRCPU");  // DEV
+            const double c0 = static_cast<double>(clock()) / CLOCKS_PER_SEC;  // DEV
             const Stopwatch watch;
             stage();
-            seconds += watch.seconds();
+            seconds += cpu ? static_cast<double>(clock()) / CLOCKS_PER_SEC - c0 : watch.seconds();  // DEV
             checkpoint();
         };
         RenderStatistics& statistics = out.render.statistics;
@@ -153,7 +157,8 @@ class Band {
                 ClusterList list = clusters_.clusters(pixel.x, y);
                 const int before = list.count;
                 rays += tracer_.kernel.add_samples(
-                    tracer_.task, {pixel.x, y, pilot, pixel.samples, known_surface(pixel, list)},
+                    tracer_.task, {pixel.x, y, pilot, pixel.samples, known_surface(pixel, list),
+                     (pixel.needs & kNeedsShadow) != 0},
                     list);
                 samples += pixel.samples - pilot;
                 for (int k = before; k < list.count; ++k)
