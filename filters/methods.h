@@ -14,6 +14,7 @@
 #include "core/option_row.h"
 #include "core/render.h"
 #include "filters/schemes.h"
+#include "filters/surface_records_options.h"
 
 namespace vecino {
 
@@ -85,6 +86,8 @@ struct MethodParameters {
     /// have doubled. 0: 16, or 512 where light is found by chance and few samples find none.
     int min_spp = 0;
     /// @}
+
+    SurfaceRecordsOptions surface_records;  ///< of the method of that name
 };
 
 /// An option of methods.
