@@ -12,6 +12,7 @@ namespace vecino {
 
 class EmbreeScene;
 class PacketLog;
+struct RecordKernel;  // record_task.h
 
 /// What shading knows of a surface: a planar quad, a triangle or a sphere.
 enum SurfaceField {
@@ -176,6 +177,7 @@ struct TraceKernel {
     /// The first hits of rays through the centres of pixels (x .. x + count - 1, y); count <=
     /// kBlockSamples.
     std::uint64_t (*trace_centres)(const TraceTask&, const SampleRange&, FirstHitRecord*);
+    const RecordKernel* records;  ///< of the method surface_records
 };
 
 /// The kernel for a width, or null if this build or this machine lacks it.

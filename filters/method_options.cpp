@@ -4,12 +4,17 @@
 // help follow from.
 #include <vector>
 
+#include "filters/method_rows.h"
 #include "filters/methods.h"
 
 namespace vecino {
 
 std::span<const MethodOption> method_options() {
-    static const std::vector<MethodOption> rows = {};
+    static const std::vector<MethodOption> rows = [] {
+        std::vector<MethodOption> all;
+        for (const MethodOption& row : surface_records_rows()) all.push_back(row);
+        return all;
+    }();
     return rows;
 }
 

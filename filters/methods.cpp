@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "filters/method_rows.h"
 
 namespace vecino {
 namespace {
@@ -14,9 +15,15 @@ MethodRender trace_paths(const MethodRequest& request, const Progress& progress)
     return {.render = render(request.scene, request.settings, progress)};
 }
 
+constexpr std::string_view kSurfaceRecordsOptions[] = {
+    "pilot_spp", "edge_spp", "cell", "levels", "record_paths", "refined_record_paths",
+    "fit_sigma", "refine_tau"};
+
 // clang-format off
 const Method kMethods[] = {
     {"path", {}, "path tracing of every pixel", trace_paths},
+    {"surface_records", kSurfaceRecordsOptions,
+     "exact coverage and direct light, indirect light interpolated on surfaces", run_surface_records},
 };
 // clang-format on
 

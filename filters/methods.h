@@ -12,11 +12,14 @@
 
 #include "core/option_row.h"
 #include "core/render.h"
+#include "filters/surface_records_options.h"
 
 namespace vecino {
 
 /// What methods can be told beside RenderSettings. Each reads those that Method::options names.
-struct MethodParameters {};
+struct MethodParameters {
+    SurfaceRecordsOptions surface_records;  ///< of the method of that name
+};
 
 /// An option of methods.
 using MethodOption = OptionRow<MethodParameters>;
