@@ -19,11 +19,14 @@ constexpr std::string_view kSurfaceRecordsOptions[] = {
     "pilot_spp", "edge_spp", "cell", "levels", "record_paths", "refined_record_paths",
     "fit_sigma", "refine_tau"};
 
+constexpr std::string_view kAutoOptions[] = {"time_budget"};
+
 // clang-format off
 const Method kMethods[] = {
     {"path", {}, "path tracing of every pixel", trace_paths},
     {"surface_records", kSurfaceRecordsOptions,
      "exact coverage and direct light, indirect light interpolated on surfaces", run_surface_records},
+    {"auto", kAutoOptions, "what a pilot says is best for the time", run_auto},
 };
 // clang-format on
 

@@ -12,6 +12,7 @@
 
 #include "core/option_row.h"
 #include "core/render.h"
+#include "filters/auto_options.h"
 #include "filters/surface_records_options.h"
 
 namespace vecino {
@@ -19,6 +20,7 @@ namespace vecino {
 /// What methods can be told beside RenderSettings. Each reads those that Method::options names.
 struct MethodParameters {
     SurfaceRecordsOptions surface_records;  ///< of the method of that name
+    AutoOptions planner;                    ///< of the method auto
 };
 
 /// An option of methods.
