@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "eval/seed_statistics.h"
+#include "eval/stability_summary.h"
 #include "eval/statistics.h"
 
 namespace vecino {
@@ -44,6 +45,9 @@ struct GroupSummary {
     std::size_t fallback_pixels = 0;  ///< of the first seed
     std::size_t dropped_samples = 0;  ///< over all seeds
     std::optional<SeedStatisticsByRegion> statistics;
+    std::optional<GroupStability> stability;  ///< none: the matrix did not ask for it
+    /// Of the failure that the scene shows, by seed; at least a tenth of its pass_below.
+    std::vector<double> signature_by_seed;
     std::vector<std::string> cells;
 
     /// Of a region by name, or of the whole image (""). Null without finished images.

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the option tables of schemes and of render methods share.
+#pragma once
+
+#include <charconv>
+#include <iterator>
+#include <string>
+
+#include "core/named_values.h"
+#include "filters/schemes.h"
+
+namespace vecino {
+
+constexpr Named<Weighting> kWeightings[] = {
+    {"proportional", Weighting::proportional},
+    {"inverse", Weighting::inverse},
+    {"gaussian", Weighting::gaussian},
+};
+
+/// A letter and a number, "c0.95": the fewest digits that read back as the same number.
+inline std::string number_slug(const std::string& letter, float number) {
+    char digits[32];
+    const auto [end, error] = std::to_chars(std::begin(digits), std::end(digits), number);
+    return letter + std::string(digits, end);
+}
+
+}  // namespace vecino
