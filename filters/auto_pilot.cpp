@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/color.h"
 #include "core/timing.h"
@@ -12,7 +13,7 @@ namespace vecino {
 namespace {
 
 constexpr std::size_t kLeastPixels = 4096;
-constexpr int kFewSpp = 4, kManySpp = 16;
+constexpr int kFewSpp = 4, kManySpp = 16;  ///< for a packet of 16 lanes all the same
 
 // Offsets of the seed: no pilot frame shares its points with another or with the final frame.
 constexpr std::uint32_t kSeedA = 0x5bd1e995u, kSeedB = 0x27d4eb2fu;
@@ -82,6 +83,7 @@ struct PathFrame {
     Image radiance;
     double seconds = 0;
     double rays_per_path = 0;
+    int lanes = 1;
 };
 
 class PilotFrames {
@@ -99,6 +101,8 @@ class PilotFrames {
         return static_cast<double>(size(reduction).area());
     }
     [[nodiscard]] double scene_s() const { return scene_s_; }
+    /// The same, and counts anew.
+    double take_scene_s() { return std::exchange(scene_s_, 0.0); }
     [[nodiscard]] const RenderSettings& settings() const { return settings_; }
 
     PathFrame path(int reduction, int spp, std::uint32_t seed) {
@@ -108,7 +112,7 @@ class PilotFrames {
         scene_s_ += made.statistics.scene_s;
         const auto paths = static_cast<double>(std::max<std::uint64_t>(made.statistics.samples, 1));
         return {std::move(made.frame.radiance), made.statistics.trace_s,
-                static_cast<double>(made.statistics.rays) / paths};
+                static_cast<double>(made.statistics.rays) / paths, made.statistics.simd_width};
     }
 
     StagedRender records(int reduction, const SurfaceRecordsPlan& plan, std::uint32_t seed) {
@@ -134,7 +138,7 @@ class PilotFrames {
 
 /// Cells at the pilot's resolution that stand for cells of so many pixels of the whole frame.
 SurfaceRecordsPlan pilot_plan(int cell, int reduction) {
-    return {4, 64, std::max(cell / reduction, 1), 0, 32, 32, 0.85, 0.15};
+    return {4, 64, std::max(cell / reduction, 1), 0, 16, 16, 0.85, 0.15};
 }
 
 // ---------------------------------------------------------------- what they say
@@ -177,6 +181,10 @@ class PilotRun {
     }
 
     Pilot run() {
+        (void)frames_.path(pilot_.reduction, 1, kSeedA);  // threads start, memory is touched
+        const double start_s = watch_.seconds();          // no part of any budget
+        watch_ = {};
+        (void)frames_.take_scene_s();
         look();
         const int reduction = affordable_reduction();
         if (reduction > 0) {
@@ -186,17 +194,29 @@ class PilotRun {
             if (pilot_.found.has_records_method) measure_records(first);
         }
         if (!budget_s_) pilot_.rates = nominal_rates(rays_per_path_);
-        pilot_.spent_s = watch_.seconds() - frames_.scene_s();
-        pilot_.scene_s = frames_.scene_s();
+        pilot_.spent_s = spent_s();
+        pilot_.scene_s = frames_.scene_s() + start_s;
         return pilot_;
     }
 
   private:
-    /// A first, small frame of each: what things cost.
+    /// First, small frames of each: what things cost. The quickest of a few count, where there is
+    /// time for them: other programs come between.
     void look() {
+        look_once();
+        for (int i = 1; budget_s_ && i < kLooks; ++i) {
+            if (spent_s() * (i + 1) / i > kPilotShare * *budget_s_) break;
+            const CostRates before = pilot_.rates;
+            look_once();
+            pilot_.rates = quicker(before, pilot_.rates);
+        }
+        if (!budget_s_) pilot_.rates = nominal_rates(rays_per_path_);
+    }
+
+    void look_once() {
         const int reduction = pilot_.reduction;
-        (void)frames_.path(reduction, 1, kSeedA);  // wakes the threads
-        const PathFrame path = frames_.path(reduction, kFewSpp, kSeedA);
+        const PathFrame path = frames_.path(reduction, kManySpp, kSeedA);
+        pilot_.found.lanes = path.lanes;
         rays_per_path_ = path.rays_per_path;
         if (pilot_.found.has_records_method) {
             const SurfaceRecordsPlan plan = pilot_plan(16, reduction);
@@ -206,17 +226,17 @@ class PilotRun {
             count(made, plan.cell * reduction, kUsualGrowth);
             extrapolate_needy(first_needy_, kUsualNeedySlope);
         }
-        pilot_.rates.path_sample_s = path.seconds / (frames_.pixels(reduction) * kFewSpp);
-        if (!budget_s_) pilot_.rates = nominal_rates(rays_per_path_);
+        pilot_.rates.path_sample_s = path.seconds / (frames_.pixels(reduction) * kManySpp);
     }
+
+    [[nodiscard]] double spent_s() const { return watch_.seconds() - frames_.scene_s(); }
 
     /// The largest frames that the pilot's share of the budget has room for; 0: none.
     [[nodiscard]] int affordable_reduction() const {
         const double budget_s =
             budget_s_ ? *budget_s_
                       : frames_.settings().spp * pilot_.found.pixels * pilot_.rates.path_sample_s;
-        const double spent_s = budget_s_ ? watch_.seconds() - frames_.scene_s() : 0;
-        const double left_s = kPilotShare * budget_s - spent_s;
+        const double left_s = kPilotShare * budget_s - (budget_s_ ? spent_s() : 0);
         for (int reduction = 1; reduction <= pilot_.reduction; ++reduction) {
             if (frames_.size(reduction).area() > kMostPixels) continue;
             if (cost(reduction) <= left_s) return reduction;
@@ -226,7 +246,7 @@ class PilotRun {
 
     [[nodiscard]] double cost(int reduction) const {
         const double pixels = frames_.pixels(reduction);
-        const double path_s = 2 * (kFewSpp + kManySpp) * pixels * pilot_.rates.path_sample_s;
+        const double path_s = 4 * kManySpp * pixels * pilot_.rates.path_sample_s;
         if (!pilot_.found.has_records_method) return path_s;
         PilotFindings found = pilot_.found;
         const double smaller = static_cast<double>(pilot_.reduction) / reduction;
@@ -255,8 +275,9 @@ class PilotRun {
             errors.slope = std::clamp(std::log2(few / many) / octaves, 0.8, 1.6);
         }
         pilot_.found.path = errors;
+        const double path_s = std::min(path_a_.seconds, path_b_.seconds);
         pilot_.rates.path_sample_s =
-            std::min(path_a_.seconds, path_b_.seconds) / (frames_.pixels(reduction) * kManySpp);
+            std::min(pilot_.rates.path_sample_s, path_s / (frames_.pixels(reduction) * kManySpp));
     }
 
     void measure_records(int first_reduction) {
@@ -285,7 +306,8 @@ class PilotRun {
     void take_rates(const StagedRender& a, const StagedRender& b, const SurfaceRecordsPlan& plan) {
         const double path_s = pilot_.rates.path_sample_s;
         const double pixels = frames_.pixels(pilot_.reduction);
-        pilot_.rates = quicker(rates_of(a, plan, pixels), rates_of(b, plan, pixels));
+        pilot_.rates =
+            quicker(pilot_.rates, quicker(rates_of(a, plan, pixels), rates_of(b, plan, pixels)));
         pilot_.rates.path_sample_s = path_s;
     }
 
@@ -336,6 +358,7 @@ class PilotRun {
             static_cast<double>(made.counts.records) * std::pow(growth, std::log2(cell / 8.0));
     }
 
+    static constexpr int kLooks = 4;
     static constexpr double kUsualGrowth = 3.8;       ///< of records by halved cells
     static constexpr double kUsualNeedySlope = 1.15;  ///< needy pixels to the size of the frame
     static constexpr double kUsualBias = 1e-6;

@@ -20,7 +20,7 @@ struct Pilot {
 };
 
 /// What it may spend of a budget, as a share.
-constexpr double kPilotShare = 0.05;
+constexpr double kPilotShare = 0.06;
 
 /// budget_s: of tracing and reconstruction; none: settings.spp by nominal rates, and no clock
 /// decides.

@@ -21,7 +21,7 @@ constexpr SurfaceRecordsPlan kTypicalPlan{2, 32, 8, 0, 64, 64, 1.0, 0.15};
 constexpr double kNoiseSlope = 0.65;
 constexpr double kBiasPerLevel = 1.6;  ///< bias falls so much with a level
 
-constexpr int kMostSpp = 1 << 20;
+constexpr int kMostPackets = 1 << 16;
 constexpr int kMostEdgeSpp = 65536;
 constexpr int kMostPaths = 1 << 20;
 constexpr double kHalfDecibel = 1.122;
@@ -49,10 +49,13 @@ SurfaceRecordsPlan scaled(SurfaceRecordsPlan plan, double factor) {
     return plan;
 }
 
+// Plans are scaled so far: first samples are not, and others in plenty do not make up for them.
+constexpr double kLeastFactor = 1.0 / 16, kMostFactor = 4;
+
 /// The largest factor that fits, to 1 %; less than least where none does.
 double factor_that_fits(const PilotFindings& found, const CostRates& rates,
                         const SurfaceRecordsPlan& plan, double seconds) {
-    double low = 1.0 / 16, high = 1024;
+    double low = kLeastFactor, high = 1024;
     if (surface_records_cost(found, rates, scaled(plan, low)) > seconds) return 0;
     while (high > 1.01 * low) {
         const double middle = std::sqrt(low * high);
@@ -70,7 +73,7 @@ constexpr int kSteps[] = {2, 4, 8, 16, 32, 64, 128};
 CostRates nominal_rates(double rays_per_path) {
     constexpr double kRay_s = 8.5e-9;
     const double path_s = rays_per_path * kRay_s;
-    return {path_s, 12.6e-9, 95e-9, 11e-9, 0.63 * path_s, 0.7e-6};
+    return {path_s, 12.6e-9, 95e-9, 11e-9, 0.55 * path_s, 0.7e-6};
 }
 
 double surface_records_cost(const PilotFindings& found, const CostRates& rates,
@@ -98,10 +101,11 @@ double surface_records_error(const PilotFindings& found, const SurfaceRecordsPla
 }
 
 Schedule plan_path(const PilotFindings& found, const CostRates& rates, double seconds) {
-    const double one_s = found.pixels * rates.path_sample_s;
+    const double packet_s = found.lanes * found.pixels * rates.path_sample_s;
+    const double packets = std::clamp(std::floor(seconds / packet_s), 1.0, double{kMostPackets});
     Schedule schedule;
-    schedule.spp = static_cast<int>(std::clamp(std::floor(seconds / one_s), 1.0, double{kMostSpp}));
-    schedule.predicted_s = schedule.spp * one_s;
+    schedule.spp = found.lanes * static_cast<int>(packets);
+    schedule.predicted_s = packets * packet_s;
     if (found.path) {
         schedule.predicted_error =
             found.path->at_16_spp * std::pow(16.0 / schedule.spp, found.path->slope);
@@ -117,7 +121,8 @@ Schedule plan_surface_records(const PilotFindings& found, const CostRates& rates
     for (const int step : kSteps) {
         const SurfaceRecordsPlan plan = surface_records_plan(step);
         const double factor = factor_that_fits(found, rates, plan, seconds);
-        if (factor == 0) continue;
+        const bool is_last = step == std::end(kSteps)[-1];
+        if (factor == 0 || (factor > kMostFactor && !is_last)) continue;
         const SurfaceRecordsPlan filled = scaled(plan, factor);
         const double error = surface_records_error(found, filled);
         if (error >= *best.predicted_error) continue;
@@ -139,8 +144,9 @@ Plans choose_schedule(const PilotFindings& found, const CostRates& rates, double
     plans.records = plan_surface_records(found, rates, seconds);
     const Schedule& path = plans.path;
     const Schedule& records = *plans.records;
-    const bool path_is_late = path.predicted_s > 1.1 * seconds;
-    if (records.predicted_s > 1.1 * seconds && records.predicted_s > path.predicted_s) {
+    const double at_most_s = std::max(1.1 * seconds, seconds + 0.02);
+    const bool path_is_late = path.predicted_s > at_most_s;
+    if (records.predicted_s > at_most_s && records.predicted_s > path.predicted_s) {
         plans.reason = "not even the least plan of surface_records fits";
     } else if (!path.predicted_error || path_is_late) {
         plans.takes_path = false;

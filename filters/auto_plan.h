@@ -13,7 +13,7 @@ namespace vecino {
 
 /// Seconds for one of each.
 struct CostRates {
-    double path_sample_s;   ///< path tracing
+    double path_sample_s;   ///< path tracing, of whole packets
     double first_sample_s;  ///< surface_records: of all pixels
     double pixel_s;         ///< needs and resolve of a pixel
     double edge_sample_s;
@@ -27,7 +27,7 @@ CostRates nominal_rates(double rays_per_path);
 
 // What a stage of surface_records costs before its first sample, in samples: measured at 512x512,
 // and scene by scene much the same.
-constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 50;
+constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 6;
 
 /// Its bias falls so much with cells of half the side.
 constexpr double kBiasPerHalving = 8;
@@ -48,6 +48,7 @@ struct RecordErrors {
 
 struct PilotFindings {
     double pixels = 0;               ///< of the frame that is wanted
+    int lanes = 16;                  ///< samples of a packet: path tracing takes as long for fewer
     double needy_pixels = 0;         ///< of it, extrapolated
     double records_at_8 = 0;         ///< with cells of 8 pixels
     double record_growth = 4;        ///< factor of records for cells of half the side

@@ -299,7 +299,7 @@ StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings
     statistics.threads = settings.threads > 0 ? settings.threads : default_thread_count();
     statistics.simd_width = kernel.width;
     if (scene.pattern != Pattern::none) {
-        fill_pattern(out.render.frame);
+        fill_pattern(out.render.frame, size);
         return out;
     }
     const Stopwatch scene_watch;
