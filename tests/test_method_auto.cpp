@@ -2,6 +2,7 @@
 //
 // The method auto: its arithmetic with rates that are given, and its schedules, which must say all
 // that decides the bits.
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -33,7 +34,7 @@ PilotFindings usual_findings() {
 
 MethodRequest request_of(const Scene& scene, int spp) {
     RenderSettings settings;
-    settings.size = {96, 80};
+    settings.size = {48, 40};
     settings.spp = spp;
     settings.planes = Planes{Plane::radiance};
     return {scene, settings, {}};
@@ -70,8 +71,10 @@ TEST_CASE("a plan fills its budget", "[auto]") {
         CHECK(records.predicted_s >= 0.93 * seconds);
         CHECK(records.predicted_s == surface_records_cost(found, rates, records.plan));
         const Schedule path = plan_path(found, rates, seconds);
-        CHECK(path.predicted_s <= seconds);
-        CHECK(path.predicted_s > seconds - found.pixels * rates.path_sample_s);
+        const double packet_s = found.lanes * found.pixels * rates.path_sample_s;
+        CHECK(path.spp % found.lanes == 0);
+        CHECK(path.predicted_s <= std::max(seconds, 1.0001 * packet_s));
+        CHECK(path.predicted_s > seconds - packet_s);
     }
 }
 
@@ -103,7 +106,7 @@ TEST_CASE("cells shrink as budgets grow, and sooner where cells are what is wron
 TEST_CASE("a budget that nothing fits gets the least of everything", "[auto]") {
     const PilotFindings found = usual_findings();
     const CostRates rates = nominal_rates(3.4);
-    CHECK(plan_path(found, rates, 1e-6).spp == 1);
+    CHECK(plan_path(found, rates, 1e-6).spp == found.lanes);
     const Schedule least = plan_surface_records(found, rates, 1e-6);
     CHECK(least.plan.pilot_spp == 1);
     CHECK(least.plan.record_paths >= 1);
@@ -138,7 +141,7 @@ TEST_CASE("a schedule gives the bits that auto gave", "[auto]") {
     for (const char* name : {"cornell_sphere", "near_lamp"}) {
         INFO(name);
         const Scene scene = load_scene(kScenes + name + ".json");
-        for (const int spp : {4, 64}) {
+        for (const int spp : {4, 64, 2048}) {
             INFO(spp);
             const MethodRequest request = request_of(scene, spp);
             const MethodRender made = render(find_method("auto"), request);
@@ -152,7 +155,7 @@ TEST_CASE("a schedule gives the bits that auto gave", "[auto]") {
 
 TEST_CASE("a budget of samples gives the same bits and facts on any number of threads", "[auto]") {
     const Scene scene = load_scene(kScenes + "hard_shadows.json");
-    MethodRequest request = request_of(scene, 256);
+    MethodRequest request = request_of(scene, 2048);
     request.settings.threads = 1;
     const MethodRender one = render(find_method("auto"), request);
     CHECK(one.facts["pilot_compares"] == true);
@@ -166,7 +169,7 @@ TEST_CASE("a budget of samples gives the same bits and facts on any number of th
 
 TEST_CASE("facts of auto say what was chosen, why, and what is expected", "[auto]") {
     const Scene scene = load_scene(kScenes + "cornell.json");
-    const nlohmann::json facts = render(find_method("auto"), request_of(scene, 256)).facts;
+    const nlohmann::json facts = render(find_method("auto"), request_of(scene, 2048)).facts;
     CHECK(facts["chosen"] == "surface_records");
     CHECK_FALSE(facts["reason"].get<std::string>().empty());
     CHECK(facts["schedule"].get<std::string>().starts_with("--method surface_records --pilot-spp"));
@@ -188,7 +191,7 @@ TEST_CASE("light that is found by chance leaves path tracing alone", "[auto]") {
 TEST_CASE("a scene without light has no error to predict", "[auto]") {
     Scene scene = load_scene(kScenes + "cornell.json");
     for (Material& material : scene.materials) material.emission = glm::vec3(0);
-    const MethodRender made = render(find_method("auto"), request_of(scene, 64));
+    const MethodRender made = render(find_method("auto"), request_of(scene, 2048));
     CHECK(made.facts["chosen"] == "path");
     CHECK(made.facts["predicted_psnr_float_db"].is_null());
     CHECK(made.render.frame.radiance(3, 5) == glm::vec3(0));
