@@ -288,7 +288,8 @@ inline void store(float (&to)[3][kPilotPixels], int at, const Float3& v) {
     store(to[2] + at, v.z);
 }
 
-inline void store(PilotBlock& block, int at, const TraceTask& task, const PilotLanes& sums) {
+inline void store(const PilotOutput& out, int at, const TraceTask& task, const PilotLanes& sums) {
+    PilotBlock& block = out.block;
     store(block.object + at, sums.object);
     store(block.surface + at, sums.surface);
     store(block.mirrors + at, sums.mirrors);
@@ -299,15 +300,18 @@ inline void store(PilotBlock& block, int at, const TraceTask& task, const PilotL
     store(block.normal, at, sums.normal);
     store(block.albedo, at, sums.albedo);
     store(block.emission, at, sums.emission);
+    PilotLight* const lights = out.lights;
     if (picks_lights(task)) {
-        store(block.picked, at, sums.picked);
-        store(block.picked_square + at, sums.picked_square);
+        store(lights[0].exact + at, sums.picked.x);
+        store(lights[0].open + at, sums.picked.y);
+        store(lights[0].seen + at, sums.picked.z);
+        store(lights[1].exact + at, sums.picked_square);
         return;
     }
     for (std::uint32_t i = 0; i < task.light_count; ++i) {
-        store(block.exact[i] + at, sums.lights[i].exact);
-        store(block.open[i] + at, sums.lights[i].open);
-        store(block.seen[i] + at, sums.lights[i].seen);
+        store(lights[i].exact + at, sums.lights[i].exact);
+        store(lights[i].open + at, sums.lights[i].open);
+        store(lights[i].seen + at, sums.lights[i].seen);
     }
 }
 
@@ -337,12 +341,6 @@ inline void spill_lane(const TraceTask& task, const SampleLanes& sample, int lan
     spill.clusters[spill.count] = empty_cluster(sample, lane, number);
     add_to_cluster(task, sample, one, spill.clusters[spill.count++]);
 }
-
-struct PilotOutput {
-    PilotBlock& block;
-    PilotSpill& spill;
-    FirstHitRecord* first_hits;  ///< or null
-};
 
 inline void pilot_packet(Tracer& tracer, const TraceTask& task, const PilotRange& range, int at,
                          const PilotOutput& out) {
@@ -376,15 +374,13 @@ inline void pilot_packet(Tracer& tracer, const TraceTask& task, const PilotRange
             if (others[i] != 0) spill_lane(task, sample, i, at + i, sample_number, out.spill);
         }
     }
-    store(out.block, at, task, sums);
+    store(out, at, task, sums);
 }
 
-std::uint64_t trace_pilot(const TraceTask& task, const PilotRange& range, PilotBlock& block,
-                          PilotSpill& spill, FirstHitRecord* first_hits) {
+std::uint64_t trace_pilot(const TraceTask& task, const PilotRange& range, const PilotOutput& out) {
     Tracer tracer(task);
-    spill.count = 0;
-    for (int at = 0; at < range.count; at += W)
-        pilot_packet(tracer, task, range, at, {block, spill, first_hits});
+    out.spill.count = 0;
+    for (int at = 0; at < range.count; at += W) pilot_packet(tracer, task, range, at, out);
     return tracer.rays();
 }
 

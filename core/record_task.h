@@ -70,11 +70,15 @@ struct PilotBlock {
     float normal[3][kPilotPixels];
     float albedo[3][kPilotPixels];
     float emission[3][kPilotPixels];
-    float exact[kMostExactLights][kPilotPixels];
-    float open[kMostExactLights][kPilotPixels];
-    float seen[kMostExactLights][kPilotPixels];
-    float picked[3][kPilotPixels];
-    float picked_square[kPilotPixels];
+};
+
+/// What goes with a PilotBlock: one for each emitter that is looked at on its own. Where each
+/// sample picks one, the first holds the light over pi in red, green and blue, and the second as
+/// `exact` the square of its luminance.
+struct PilotLight {
+    alignas(64) float exact[kPilotPixels];
+    float open[kPilotPixels];
+    float seen[kPilotPixels];
 };
 
 /// Further surfaces of pilot pixels.
@@ -124,11 +128,17 @@ struct RecordLight {
     std::uint32_t dropped;   ///< paths whose light was not finite; they enter no mean
 };
 
+/// Where first samples go.
+struct PilotOutput {
+    PilotBlock& block;
+    PilotLight* lights;
+    PilotSpill& spill;
+    FirstHitRecord* first_hits;  ///< of the first sample of each pixel, or null
+};
+
 /// Kernels of one packet width. All return the number of rays traced.
 struct RecordKernel {
-    /// Writes the hits of the first sample of each pixel to first_hits unless that is null.
-    std::uint64_t (*trace_pilot)(const TraceTask&, const PilotRange&, PilotBlock&, PilotSpill&,
-                                 FirstHitRecord* first_hits);
+    std::uint64_t (*trace_pilot)(const TraceTask&, const PilotRange&, const PilotOutput&);
     /// Adds samples to what is known of a pixel.
     std::uint64_t (*add_samples)(const TraceTask&, const PixelSamples&, ClusterList&);
     std::uint64_t (*gather)(const TraceTask&, const RecordRange&, RecordLight&);

@@ -59,6 +59,10 @@ struct Cell {
     [[nodiscard]] double samples_ratio() const;
 };
 
+/// Of an image from elsewhere: whether the option of renders decides it. All that decides a frame
+/// does, if it rebuilds one of ours.
+bool reads(const Cell& image, std::string_view option);
+
 struct Matrix {
     std::string name;
     std::string file;

@@ -2,7 +2,6 @@
 #include "eval/run_matrix.h"
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -354,10 +353,7 @@ class Runner {
     }
 
     void write_run() {
-        char date[32];
-        const std::time_t now = std::time(nullptr);
-        std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-        run_["finished_utc"] = date;
+        run_["finished_utc"] = utc_time();
         run_["command"] = "vecino run " + matrix_.file + " -o " + directory_.path();
         run_["cells"] = cells_.size();
         run_["seconds"] = before_.seconds + watch_.seconds();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "core/memory.h"
 #include "filters/partial_frame.h"
 #include "filters/plane_fit.h"
 #include "filters/plans.h"
@@ -97,10 +98,23 @@ class Adaptive {
 
   private:
     /// Traced pixels that an interpolated one comes from.
-    using Ancestors = std::array<std::int32_t, kMostPoints>;
-    static constexpr std::int32_t kNone = -1;
+    using Ancestors = std::array<std::uint32_t, kMostPoints>;
+    static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
     enum class Verdict : std::uint8_t { interpolated, disagreement, unsupported };
+
+    /// The traced pixels that one is interpolated from, and where they are from there.
+    struct Sources {
+        std::size_t count = 0;
+        std::array<std::uint32_t, kMostPoints> pixel;
+        std::array<Pixel, kMostPoints> offset;
+    };
+    /// Of parents that are each traced, or stand for so many.
+    static constexpr std::size_t kMostFound = 4 * kMostPoints;
+    struct Found {
+        std::size_t count = 0;
+        std::array<std::uint64_t, kMostFound> keys;  ///< squared distance, then number
+    };
 
     [[nodiscard]] std::uint32_t number(int x, int y) const {
         return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(size_.width) +
@@ -181,44 +195,50 @@ class Adaptive {
 
     /// Traced pixels around a pixel, of its surface, nearest first: its parents, where each that
     /// was interpolated stands for those that it comes from.
-    [[nodiscard]] PixelList sources_of(std::size_t pixel, int h, bool middles) const {
-        const auto [x, y] = pixel_at(pixel, size_);
-        const std::array<Pixel, 4> diagonal{{{-h, -h}, {h, -h}, {-h, h}, {h, h}}};
-        const std::array<Pixel, 4> axial{{{0, -h}, {-h, 0}, {h, 0}, {0, h}}};
-        PixelList sources;
-        for (const Pixel& to : middles ? diagonal : axial) {
+    [[nodiscard]] Sources sources_of(std::size_t pixel, int h, bool middles) const {
+        constexpr std::array<Pixel, 4> kDiagonal{{{-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+        constexpr std::array<Pixel, 4> kAxial{{{0, -1}, {-1, 0}, {1, 0}, {0, 1}}};
+        const Pixel at = pixel_at(pixel, size_);
+        Found found;
+        for (const Pixel& to : middles ? kDiagonal : kAxial) {
             // Beyond the last row or column, which is traced, it takes the place of the parent.
-            const int u = std::min(x + to.x, size_.width - 1);
-            const int v = std::min(y + to.y, size_.height - 1);
-            if (u >= 0 && v >= 0) add_sources(pixel, number(u, v), sources);
+            const int u = std::min(at.x + h * to.x, size_.width - 1);
+            const int v = std::min(at.y + h * to.y, size_.height - 1);
+            if (u >= 0 && v >= 0) add_sources(pixel, number(u, v), found);
         }
-        std::ranges::sort(sources);
-        const auto doubled = std::ranges::unique(sources);
-        sources.erase(doubled.begin(), doubled.end());
-        std::ranges::stable_sort(sources, {}, [&](std::uint32_t source) {
-            const Pixel at = pixel_at(source, size_);
-            return (at.x - x) * (at.x - x) + (at.y - y) * (at.y - y);
-        });
-        if (sources.size() > kMostPoints) sources.resize(kMostPoints);
+        const auto end = found.keys.begin() + static_cast<std::ptrdiff_t>(found.count);
+        std::sort(found.keys.begin(), end);
+        const auto unique_end = std::unique(found.keys.begin(), end);
+        Sources sources;
+        for (auto key = found.keys.begin(); key != unique_end; ++key) {
+            if (sources.count == kMostPoints) break;
+            sources.pixel[sources.count] = static_cast<std::uint32_t>(*key);
+            const Pixel there = pixel_at(sources.pixel[sources.count], size_);
+            sources.offset[sources.count++] = {there.x - at.x, there.y - at.y};
+        }
         return sources;
     }
 
-    void add_sources(std::size_t pixel, std::uint32_t parent, PixelList& sources) const {
+    void add_sources(std::size_t pixel, std::uint32_t parent, Found& found) const {
+        const Pixel at = pixel_at(pixel, size_);
         const auto add = [&](std::uint32_t source) {
-            if (partial_.is_source(source) && partial_.guide().is_same_surface(pixel, source))
-                sources.push_back(source);
+            if (!partial_.is_source(source) || !partial_.guide().is_same_surface(pixel, source))
+                return;
+            const Pixel there = pixel_at(source, size_);
+            const std::int64_t x = there.x - at.x, y = there.y - at.y;
+            found.keys[found.count++] = static_cast<std::uint64_t>(x * x + y * y) << 32 | source;
         };
         if (partial_.is_traced(parent)) return add(parent);
-        for (const std::int32_t source : ancestors_[parent]) {
-            if (source != kNone) add(static_cast<std::uint32_t>(source));
+        for (const std::uint32_t source : ancestors_[parent]) {
+            if (source != kNone) add(source);
         }
     }
 
-    [[nodiscard]] bool agree(const PixelList& sources) const {
+    [[nodiscard]] bool agree(const Sources& sources) const {
         glm::dvec3 least(1e300), most(-1e300), mean(0.0), variance(0.0);
-        const auto count = static_cast<double>(sources.size());
-        for (const std::uint32_t source : sources) {
-            const Light light = light_of(source);
+        const auto count = static_cast<double>(sources.count);
+        for (std::size_t i = 0; i < sources.count; ++i) {
+            const Light light = light_of(sources.pixel[i]);
             least = glm::min(least, light.value);
             most = glm::max(most, light.value);
             mean += light.value / count;
@@ -235,88 +255,79 @@ class Adaptive {
                kRangeErrors * std::sqrt(variance);
     }
 
-    struct Guess {
-        Verdict verdict = Verdict::unsupported;
-        PixelValues values;  ///< unless unsupported
-        Ancestors ancestors{};
-    };
-
-    [[nodiscard]] Guess guess(std::size_t pixel, int h, bool middles) const {
-        Guess result;
-        if (partial_.guide().must_trace(pixel)) return result;
-        const PixelList sources = sources_of(pixel, h, middles);
-        const Pixel at = pixel_at(pixel, size_);
-        std::vector<Pixel> offsets;
-        for (const std::uint32_t source : sources) {
-            const Pixel there = pixel_at(source, size_);
-            offsets.push_back({there.x - at.x, there.y - at.y});
-        }
-        if (sources.size() < 3 || !surrounds_origin(offsets)) return result;
-        const std::vector<double> weights = weights_at_origin(offsets);
+    /// Interpolates a pixel if what surrounds it agrees. If that does not, guessed is what
+    /// interpolation would have made of it.
+    Verdict judge(std::size_t pixel, int h, bool middles, glm::vec3& guessed) {
+        if (partial_.guide().must_trace(pixel)) return Verdict::unsupported;
+        const Sources sources = sources_of(pixel, h, middles);
+        const std::span offsets(sources.offset.data(), sources.count);
+        if (sources.count < 3 || !surrounds_origin(offsets)) return Verdict::unsupported;
+        std::array<double, kMostPoints> weights;
+        weights_at_origin(offsets, std::span(weights).first(sources.count));
         Blend blend;
-        result.ancestors.fill(kNone);
-        for (std::size_t i = 0; i < sources.size(); ++i) {
-            blend.add(partial_.frame(), sources[i], partial_.guide().hit(sources[i]), weights[i]);
-            result.ancestors[i] = static_cast<std::int32_t>(sources[i]);
+        for (std::size_t i = 0; i < sources.count; ++i) {
+            const std::uint32_t source = sources.pixel[i];
+            blend.add(partial_.frame(), source, partial_.guide().hit(source), weights[i]);
         }
         const auto& albedo = partial_.guide().hit(pixel).albedo;
-        result.values = blend.values(glm::vec3(albedo[0], albedo[1], albedo[2]));
-        result.verdict = agree(sources) ? Verdict::interpolated : Verdict::disagreement;
-        return result;
+        const PixelValues values = blend.values(glm::vec3(albedo[0], albedo[1], albedo[2]));
+        guessed = values.direct + values.indirect;
+        if (!agree(sources)) return Verdict::disagreement;
+        partial_.store(pixel, values);
+        calculated_.values()[pixel] = static_cast<float>(pass_ + 1);
+        ancestors_[pixel].fill(kNone);
+        std::copy_n(sources.pixel.begin(), sources.count, ancestors_[pixel].begin());
+        return Verdict::interpolated;
     }
 
     void refine(int h, bool middles) {
         const PixelList pixels = candidates(h, middles);
-        std::vector<Guess> guesses(pixels.size());
+        std::vector<Verdict> verdicts(pixels.size());
+        std::vector<glm::vec3> guesses(pixels.size());
         PixelList all(pixels.size());
         for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-        partial_.for_each(all, [&](std::size_t i) { guesses[i] = guess(pixels[i], h, middles); });
+        partial_.for_each(
+            all, [&](std::size_t i) { verdicts[i] = judge(pixels[i], h, middles, guesses[i]); });
         PixelList to_trace;
         for (std::size_t i = 0; i < pixels.size(); ++i) {
-            if (guesses[i].verdict != Verdict::interpolated) to_trace.push_back(pixels[i]);
+            if (verdicts[i] != Verdict::interpolated) to_trace.push_back(pixels[i]);
         }
         trace(to_trace);
+        if (!parameters_.correction) return;
+        PixelList off;
         for (std::size_t i = 0; i < pixels.size(); ++i) {
-            if (guesses[i].verdict == Verdict::interpolated) accept(pixels[i], guesses[i]);
+            if (verdicts[i] == Verdict::disagreement && is_off(pixels[i], guesses[i]))
+                off.push_back(pixels[i]);
         }
-        if (parameters_.correction) trace(wrong_around(pixels, guesses, h));
+        trace(interpolated_near(off, h));
     }
 
-    void accept(std::size_t pixel, const Guess& guess) {
-        partial_.store(pixel, guess.values);
-        ancestors_[pixel] = guess.ancestors;
-        calculated_.values()[pixel] = static_cast<float>(pass_ + 1);
-    }
-
-    /// Interpolated pixels near to one at which interpolation would have been wrong.
-    [[nodiscard]] PixelList wrong_around(const PixelList& pixels, const std::vector<Guess>& guesses,
-                                         int h) {
-        std::vector<std::uint8_t> is_wrong(partial_.area());
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            if (guesses[i].verdict != Verdict::disagreement) continue;
-            if (!is_off(pixels[i], guesses[i].values)) continue;
-            const auto [x, y] = pixel_at(pixels[i], size_);
+    /// Interpolated pixels near to some at which interpolation would have been wrong.
+    [[nodiscard]] PixelList interpolated_near(const PixelList& pixels, int h) {
+        std::vector<std::uint8_t> is_near(partial_.area());
+        for (const std::uint32_t pixel : pixels) {
+            const auto [x, y] = pixel_at(pixel, size_);
             for (int v = std::max(y - h, 0); v <= std::min(y + h, size_.height - 1); ++v) {
                 for (int u = std::max(x - h, 0); u <= std::min(x + h, size_.width - 1); ++u)
-                    is_wrong[number(u, v)] = 1;
+                    is_near[number(u, v)] = 1;
             }
         }
-        PixelList wrong;
-        for (std::uint32_t i = 0; i < is_wrong.size(); ++i) {
+        PixelList found;
+        for (std::uint32_t i = 0; i < is_near.size(); ++i) {
             const bool is_interpolated = calculated_.values()[i] != 0 && !partial_.is_traced(i);
-            if (is_wrong[i] != 0 && is_interpolated) wrong.push_back(i);
+            if (is_near[i] != 0 && is_interpolated) found.push_back(i);
         }
-        corrected_ += wrong.size();
-        return wrong;
+        corrected_ += found.size();
+        return found;
     }
 
     /// Whether a traced pixel is not what interpolation made of it.
-    [[nodiscard]] bool is_off(std::size_t pixel, const PixelValues& guess) const {
+    [[nodiscard]] bool is_off(std::size_t pixel, const glm::vec3& guess) const {
         const Light light = light_of(pixel);
         const auto& albedo = partial_.guide().hit(pixel).albedo;
         for (int c = 0; c < 3; ++c) {
             const float share = albedo[c] > kLeastAlbedo ? albedo[c] : 1.0f;
-            const auto guessed = static_cast<double>((guess.direct[c] + guess.indirect[c]) / share);
+            const auto guessed = static_cast<double>(guess[c] / share);
             const double error = std::abs(light.value[c] - guessed);
             if (error > allowed_difference(light.value[c], light.variance[c])) return true;
         }
@@ -338,6 +349,9 @@ class Adaptive {
 }  // namespace
 
 MethodRender render_adaptive(const MethodRequest& request, const Progress& progress) {
+    const Extent size = reduced(request.settings.size, request.settings.reduction);
+    constexpr std::size_t kBytesPerPixel = 160;  // what it keeps beside frame and first hits
+    require_memory(size.area() * kBytesPerPixel, "adaptive render of " + size_text(size));
     return Adaptive(request, progress).run();
 }
 

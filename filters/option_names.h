@@ -25,4 +25,12 @@ inline std::string number_slug(const std::string& letter, float number) {
     return letter + std::string(digits, end);
 }
 
+/// The number that is written as its shortest spelling: 0.95 and not 0.949999988.
+inline double shortest(float number) {
+    const std::string digits = number_slug("", number);
+    double result = 0;
+    std::from_chars(digits.data(), digits.data() + digits.size(), result);
+    return result;
+}
+
 }  // namespace vecino

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/render_task.h"
 
@@ -83,6 +85,8 @@ PartialFrame::PartialFrame(const MethodRequest& request, const Progress& progres
       tracer_(request.scene, checked(request.settings), variance_of),
       frame_(make_frame(tracer_.size(), planes_to_keep(request.settings, variance_of))),
       state_(tracer_.size().area()) {
+    require_memory(tracer_.size().area() * sizeof(FirstHitRecord),
+                   "first hits of " + size_text(tracer_.size()));
     guide_.emplace(tracer_.centre_hits(stage(progress, 0, 0)), request.scene,
                    GuideSettings{tracer_.size(), request.parameters.min_normal_cosine,
                                  request.settings.threads});
@@ -186,6 +190,7 @@ void PartialFrame::add_first_hits(Frame& frame) {
 
 MethodRender PartialFrame::finish(nlohmann::json facts) {
     add_first_hits(frame_);
+    if (progress_ && !progress_(1.0)) throw Error(ExitCode::interrupted, "interrupted");
     const auto untraced = static_cast<std::size_t>(std::ranges::count(state_, kUntraced));
     const std::size_t traced = area() - untraced;
     const Planes asked = planes_to_make(request_.settings);

@@ -6,16 +6,24 @@
 
 namespace vecino {
 
-PixelClusters::PixelClusters(int width, RowRange rows, int lights)
+PixelClusters::PixelClusters(int width, int most_rows, int lights)
     : width_(width),
-      rows_(rows),
       blocks_per_row_(static_cast<std::size_t>((width + kPilotPixels - 1) / kPilotPixels)),
-      lights_(lights),
-      blocks_(std::make_unique_for_overwrite<PilotBlock[]>(
-          blocks_per_row_ * static_cast<std::size_t>(rows.end - rows.begin))),
-      list_index_(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows.end - rows.begin),
-                  -1),
-      lists_(static_cast<std::size_t>(rows.end - rows.begin)) {}
+      picks_(lights > kMostExactLights),
+      light_planes_(picks_ ? 2 : static_cast<std::size_t>(lights)),
+      blocks_(
+          std::make_unique<PilotBlock[]>(blocks_per_row_ * static_cast<std::size_t>(most_rows))),
+      lights_(std::make_unique<PilotLight[]>(blocks_per_row_ * static_cast<std::size_t>(most_rows) *
+                                             light_planes_)) {
+    begin({0, most_rows});
+}
+
+void PixelClusters::begin(RowRange rows) {
+    rows_ = rows;
+    const auto count = static_cast<std::size_t>(rows.end - rows.begin);
+    list_index_.assign(static_cast<std::size_t>(width_) * count, -1);
+    lists_.assign(count, {});
+}
 
 const ClusterList* PixelClusters::list(int x, int y) const {
     const std::int32_t index = list_index_[pixel_index(x, y)];
@@ -67,13 +75,16 @@ Cluster PixelClusters::first_cluster(int x, int y) const {
         to.albedo[k] = from.albedo[k][i];
         to.emission[k] = from.emission[k][i];
     }
-    if (lights_ > kMostExactLights) {
-        for (int k = 0; k < 3; ++k) to.picked[k] = from.picked[k][i];
-        to.picked_square = from.picked_square[i];
+    const PilotLight* const planes = lights(x, y);
+    if (picks_) {
+        to.picked[0] = planes[0].exact[i];
+        to.picked[1] = planes[0].open[i];
+        to.picked[2] = planes[0].seen[i];
+        to.picked_square = planes[1].exact[i];
         return to;
     }
-    for (int k = 0; k < lights_; ++k)
-        to.lights[k] = {from.exact[k][i], from.open[k][i], from.seen[k][i]};
+    for (std::size_t k = 0; k < light_planes_; ++k)
+        to.lights[k] = {planes[k].exact[i], planes[k].open[i], planes[k].seen[i]};
     return to;
 }
 
@@ -89,15 +100,18 @@ void PixelClusters::store_first(int x, int y, const Cluster& from) {
         to.albedo[k][i] = from.albedo[k];
         to.emission[k][i] = from.emission[k];
     }
-    if (lights_ > kMostExactLights) {
-        for (int k = 0; k < 3; ++k) to.picked[k][i] = from.picked[k];
-        to.picked_square[i] = from.picked_square;
+    PilotLight* const planes = lights_.get() + block_index(x, y) * light_planes_;
+    if (picks_) {
+        planes[0].exact[i] = from.picked[0];
+        planes[0].open[i] = from.picked[1];
+        planes[0].seen[i] = from.picked[2];
+        planes[1].exact[i] = from.picked_square;
         return;
     }
-    for (int k = 0; k < lights_; ++k) {
-        to.exact[k][i] = from.lights[k].exact;
-        to.open[k][i] = from.lights[k].open;
-        to.seen[k][i] = from.lights[k].seen;
+    for (std::size_t k = 0; k < light_planes_; ++k) {
+        planes[k].exact[i] = from.lights[k].exact;
+        planes[k].open[i] = from.lights[k].open;
+        planes[k].seen[i] = from.lights[k].seen;
     }
 }
 
@@ -107,8 +121,10 @@ std::uint64_t PixelClusters::trace_row(const RecordTracer& tracer, int y, int sa
     PilotSpill spill;
     for (int x = 0; x < width_; x += kPilotPixels) {
         const PilotRange range{x, y, std::min(kPilotPixels, width_ - x), samples};
-        rays += tracer.kernel.trace_pilot(tracer.task, range, blocks_[block_index(x, y)], spill,
-                                          first_hits == nullptr ? nullptr : first_hits + x);
+        const std::size_t at = block_index(x, y);
+        rays += tracer.kernel.trace_pilot(tracer.task, range,
+                                          {blocks_[at], lights_.get() + at * light_planes_, spill,
+                                           first_hits == nullptr ? nullptr : first_hits + x});
         take_spill(spill, x, y);
     }
     return rays;

@@ -31,8 +31,11 @@ struct RowRange {
 
 class PixelClusters {
   public:
-    /// For scenes with so many emitters that are looked at one by one.
-    PixelClusters(int width, RowRange rows, int lights);
+    /// Room for so many rows of a scene with so many emitters; none yet.
+    PixelClusters(int width, int most_rows, int lights);
+
+    /// Forgets what there was and begins with other rows, at most as many as there is room for.
+    void begin(RowRange rows);
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] RowRange rows() const { return rows_; }
@@ -40,8 +43,9 @@ class PixelClusters {
     /// The first samples of a pixel's first surface. Precondition of all that take x and y: 0 <= x
     /// < width and y in rows.
     [[nodiscard]] const PilotBlock& block(int x, int y) const { return blocks_[block_index(x, y)]; }
-    [[nodiscard]] std::int32_t first_object(int x, int y) const {
-        return block(x, y).object[x % kPilotPixels];
+    /// What goes with the block.
+    [[nodiscard]] const PilotLight* lights(int x, int y) const {
+        return lights_.get() + block_index(x, y) * light_planes_;
     }
 
     /// Null for a pixel whose samples all hit one surface and that has asked for no list.
@@ -81,8 +85,10 @@ class PixelClusters {
     int width_;
     RowRange rows_;
     std::size_t blocks_per_row_;
-    int lights_;
-    std::unique_ptr<PilotBlock[]> blocks_;         ///< planes of other emitters are never written
+    bool picks_;                ///< whether each sample picks an emitter
+    std::size_t light_planes_;  ///< PilotLight of a block
+    std::unique_ptr<PilotBlock[]> blocks_;
+    std::unique_ptr<PilotLight[]> lights_;
     std::vector<std::int32_t> list_index_;         ///< by pixel, into its row's lists; -1: none
     std::vector<std::vector<ClusterList>> lists_;  ///< by row
 };

@@ -11,110 +11,48 @@
 namespace vecino {
 namespace {
 
-constexpr float kAlbedoJump2 = 1e-3f;   ///< squared difference that counts as an edge
-constexpr float kCreaseCosine = 0.95f;  ///< between normals; below, there is an edge
 constexpr float kLeastSamples = 16.0f;  ///< of a needy pixel
 
 // ---------------------------------------------------------------- which pixels
 
-/// What neighbours are compared by.
-struct PixelLook {
-    std::int32_t object;
-    std::uint8_t in_sight = 0;   ///< by emitter: some sample sees it
-    std::uint8_t reachable = 0;  ///< by emitter: nothing but other surfaces could hide it
-    bool mixed = false;          ///< in half-shadow
-    bool several = false;        ///< of several surfaces
-    glm::vec3 albedo, normal;
-};
-
-bool is_mixed(const LightSums& sums) {
-    return sums.seen > 0 && sums.seen < sums.open;
-}
-
-void look_at_lights(const TraceTask& task, const Cluster& cluster, PixelLook& look) {
-    if (task.light_count > static_cast<std::uint32_t>(kMostExactLights)) {
-        look.mixed = look.mixed || cluster.picked_square > 0;
-        return;
-    }
-    for (std::uint32_t i = 0; i < task.light_count; ++i) {
-        const LightSums& sums = cluster.lights[i];
-        const auto bit = static_cast<std::uint8_t>(1u << i);
-        if (sums.seen > 0) look.in_sight |= bit;
-        if (sums.exact > 0) look.reachable |= bit;
-        look.mixed = look.mixed || is_mixed(sums);
-    }
-}
-
-PixelLook look_of(const NeedInputs& inputs, int x, int y) {
-    const ClusterList* const list = inputs.clusters.list(x, y);
-    const Cluster first = list == nullptr ? inputs.clusters.first_cluster(x, y) : list->clusters[0];
-    const ClusterMeans means = means_of(first);
-    PixelLook look{first.object, 0, 0, false, list != nullptr, means.albedo, means.normal};
-    look_at_lights(inputs.tracer.task, first, look);
-    for (int k = 1; list != nullptr && k < list->count; ++k) {
-        PixelLook other{};
-        look_at_lights(inputs.tracer.task, list->clusters[k], other);
-        look.mixed = look.mixed || other.mixed;
-    }
-    return look;
-}
-
-/// Needs that both of two neighbours have because they differ.
-std::uint8_t needs_between(const PixelLook& a, const PixelLook& b) {
-    std::uint8_t needs = a.mixed || b.mixed ? kNeedsShadow : 0;
-    if (a.object != b.object || a.several || b.several) return needs | kNeedsCoverage;
-    const glm::vec3 jump = a.albedo - b.albedo;
-    if (glm::dot(jump, jump) > kAlbedoJump2 ||
-        (a.object >= 0 && glm::dot(a.normal, b.normal) < kCreaseCosine)) {
-        needs |= kNeedsCoverage;
-    }
-    if (((a.in_sight ^ b.in_sight) & a.reachable & b.reachable) != 0) needs |= kNeedsShadow;
-    return needs;
-}
-
-/// Looks of a row with its neighbours above and below; those outside of the image are empty.
-class LookWindow {
+/// Goes down rows, comparing each with the one above it.
+class NeedFinder {
   public:
-    explicit LookWindow(const NeedInputs& inputs) : inputs_(inputs) {}
-
-    /// Moves to a row, most cheaply to the next one.
-    void move_to(int y) {
-        if (y == y_ + 1) {
-            std::swap(rows_[0], rows_[1]);
-            std::swap(rows_[1], rows_[2]);
-            fill(y + 1, rows_[2]);
-        } else {
-            for (int k = 0; k < 3; ++k) fill(y + k - 1, rows_[static_cast<std::size_t>(k)]);
-        }
-        y_ = y;
+    NeedFinder(const NeedInputs& inputs, RowRange rows) : inputs_(inputs) {
+        look(rows.begin - 1, above_);
+        look(rows.begin, own_);
+        needs_.assign(width(), 0);
+        std::vector<std::int32_t> unread(width(), 0);
+        compare_rows(above_, own_, unread, needs_);
     }
 
-    [[nodiscard]] std::uint8_t needs(int x) const {
-        const auto at = static_cast<std::size_t>(x);
-        const PixelLook& own = rows_[1][at];
-        std::uint8_t needs = 0;
-        if (own.several) needs |= kNeedsCoverage;
-        if (own.mixed) needs |= kNeedsShadow;
-        for (const auto& row : rows_) {
-            if (row.empty()) continue;
-            const std::size_t end = std::min(at + 2, row.size());
-            for (std::size_t i = at > 0 ? at - 1 : 0; i < end; ++i)
-                needs |= needs_between(own, row[i]);
+    /// The next row's needy pixels.
+    std::vector<NeedyPixel> next(int y) {
+        compare_in_row(own_, needs_);
+        look(y + 1, below_);
+        std::vector<std::int32_t> of_below(width(), 0);
+        compare_rows(own_, below_, needs_, of_below);
+        std::vector<NeedyPixel> needy;
+        for (std::size_t x = 0; x < needs_.size(); ++x) {
+            if (needs_[x] != 0)
+                needy.push_back({static_cast<int>(x), static_cast<std::uint8_t>(needs_[x])});
         }
-        return needs;
+        std::swap(own_, below_);
+        needs_ = std::move(of_below);
+        return needy;
     }
 
   private:
-    void fill(int y, std::vector<PixelLook>& row) const {
-        row.clear();
-        if (y < inputs_.clusters.rows().begin || y >= inputs_.clusters.rows().end) return;
-        row.reserve(static_cast<std::size_t>(inputs_.clusters.width()));
-        for (int x = 0; x < inputs_.clusters.width(); ++x) row.push_back(look_of(inputs_, x, y));
+    [[nodiscard]] std::size_t width() const {
+        return static_cast<std::size_t>(inputs_.clusters.width());
+    }
+    void look(int y, LookRow& row) const {
+        look_at_row(inputs_.tracer.task, inputs_.clusters, y, row);
     }
 
     const NeedInputs& inputs_;
-    int y_ = -2;
-    std::array<std::vector<PixelLook>, 3> rows_;
+    LookRow above_, own_, below_;
+    std::vector<std::int32_t> needs_;
 };
 
 NeedyRows find_needs(const NeedInputs& inputs, RowRange rows) {
@@ -122,14 +60,9 @@ NeedyRows find_needs(const NeedInputs& inputs, RowRange rows) {
     const auto count = static_cast<std::size_t>(rows.end - rows.begin);
     NeedyRows needy(count);
     for_each_block(count, kRowsPerBlock, inputs.tracer.threads, [&](BlockRange block) {
-        LookWindow window(inputs);
-        for (std::size_t r = block.begin; r < block.end; ++r) {
-            window.move_to(rows.begin + static_cast<int>(r));
-            for (int x = 0; x < inputs.clusters.width(); ++x) {
-                const std::uint8_t needs = window.needs(x);
-                if (needs != 0) needy[r].push_back({x, needs});
-            }
-        }
+        const auto row = [&](std::size_t r) { return rows.begin + static_cast<int>(r); };
+        NeedFinder finder(inputs, {row(block.begin), row(block.end)});
+        for (std::size_t r = block.begin; r < block.end; ++r) needy[r] = finder.next(row(r));
     });
     return needy;
 }

@@ -8,15 +8,10 @@
 #include <vector>
 
 #include "filters/pixel_clusters.h"
+#include "filters/pixel_looks.h"
 #include "filters/records.h"
 
 namespace vecino {
-
-/// Why a pixel wants samples.
-enum Need : std::uint8_t {
-    kNeedsCoverage = 1,  ///< several surfaces or albedos may share it
-    kNeedsShadow = 2,    ///< what is in sight of the light differs within it or around it
-};
 
 struct NeedyPixel {
     int x;

@@ -16,15 +16,13 @@ std::int64_t dot(Pixel a, Pixel b) {
     return std::int64_t{a.x} * b.x + std::int64_t{a.y} * b.y;
 }
 
-std::vector<double> inverse_distances(std::span<const Pixel> points) {
-    std::vector<double> weights;
+void inverse_distances(std::span<const Pixel> points, std::span<double> weights) {
     double sum = 0;
-    for (const Pixel& point : points) {
-        weights.push_back(1.0 / std::sqrt(static_cast<double>(dot(point, point))));
-        sum += weights.back();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        weights[i] = 1.0 / std::sqrt(static_cast<double>(dot(points[i], points[i])));
+        sum += weights[i];
     }
     for (double& weight : weights) weight /= sum;
-    return weights;
 }
 
 }  // namespace
@@ -39,7 +37,7 @@ bool surrounds_origin(std::span<const Pixel> points) {
     });
 }
 
-std::vector<double> weights_at_origin(std::span<const Pixel> points) {
+void weights_at_origin(std::span<const Pixel> points, std::span<double> weights) {
     const auto count = static_cast<double>(points.size());
     double x = 0, y = 0;
     for (const Pixel& point : points) {
@@ -53,14 +51,12 @@ std::vector<double> weights_at_origin(std::span<const Pixel> points) {
         yy += (point.y - y) * (point.y - y);
     }
     const double determinant = xx * yy - xy * xy;
-    if (determinant < 1e-9 * (xx + yy) * (xx + yy)) return inverse_distances(points);
+    if (determinant < 1e-9 * (xx + yy) * (xx + yy)) return inverse_distances(points, weights);
     // The value at the middle, and from there along the slopes to the origin.
     const double to_x = (-x * yy + y * xy) / determinant;
     const double to_y = (-y * xx + x * xy) / determinant;
-    std::vector<double> weights;
-    for (const Pixel& point : points)
-        weights.push_back(1.0 / count + to_x * (point.x - x) + to_y * (point.y - y));
-    return weights;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        weights[i] = 1.0 / count + to_x * (points[i].x - x) + to_y * (points[i].y - y);
 }
 
 }  // namespace vecino

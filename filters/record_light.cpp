@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "filters/record_blocks.h"
 #include "filters/records.h"
 
 namespace vecino {
@@ -21,29 +22,16 @@ class Blend {
     Blend(const RecordMap& map, const SurfacePoint& point) : map_(map), point_(point) {}
 
     bool run(RecordValue& light) {
-        const std::size_t level = finest_level();
-        if (!add_four(level) && !add_around()) {
-            light = {};
-            return false;
-        }
+        light = {};
+        if (map_.levels.empty()) return false;
+        const std::size_t level = finest_level(map_, point_.x, point_.y);
+        if (!add_four(level) && !add_around()) return false;
         for (std::size_t c = 0; c < map_.channels; ++c)
             light[c] = std::max(sum_[c] / weight_, 0.0f);
-        for (std::size_t c = map_.channels; c < kRecordChannels; ++c) light[c] = 0.0f;
         return true;
     }
 
   private:
-    [[nodiscard]] std::size_t finest_level() const {
-        std::size_t level = 0;
-        while (level + 1 < map_.levels.size()) {
-            const RecordLevel& next = map_.levels[level + 1];
-            const int column = point_.x / next.cell(), row = point_.y / next.cell();
-            if (!next.is_inside(column, row) || !next.is_active(column, row)) break;
-            ++level;
-        }
-        return level;
-    }
-
     /// The four cells around the point's pixel.
     bool add_four(std::size_t level) {
         const float per_cell = 1.0f / static_cast<float>(map_.levels[level].cell());

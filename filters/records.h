@@ -88,7 +88,7 @@ struct RecordWork {
 RecordWork gather_records(const RecordTracer& tracer, const PixelClusters& clusters,
                           const SurfaceRecordsPlan& plan);
 
-/// Adds a record to a cell for a surface that has none there: a sample of a pixel hit it.
+/// Where a record is: what a sample of a pixel hits.
 struct RecordSeed {
     int x, y;
     std::uint32_t sample;

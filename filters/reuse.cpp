@@ -80,20 +80,27 @@ class Reuse {
     void take_colour(std::size_t pixel) {
         const std::vector<Near> found = near(pixel);
         Blend blend;
-        if (parameters_.reused == Reused::nearest) {
+        if (parameters_.reused == Reused::mean) blend = mean_of(found);
+        // Hits at one place have no weights by distance.
+        if (!(blend.weight() > 0) || !std::isfinite(blend.weight())) {
             const auto nearest = std::ranges::min_element(found, {}, &Near::distance);
+            blend = Blend();
             blend.add(partial_.frame(), nearest->pixel, partial_.guide().hit(nearest->pixel), 1.0);
-            return partial_.store(pixel, blend);
         }
+        partial_.store(pixel, blend);
+    }
+
+    [[nodiscard]] Blend mean_of(const std::vector<Near>& found) const {
         double mean_distance = 0;
         for (const Near& each : found)
             mean_distance += each.distance / static_cast<double>(found.size());
+        Blend blend;
         for (const Near& each : found) {
             const double weight =
                 source_weight(parameters_.weighting, each.distance, mean_distance);
             blend.add(partial_.frame(), each.pixel, partial_.guide().hit(each.pixel), weight);
         }
-        partial_.store(pixel, blend);
+        return blend;
     }
 
     const MethodParameters& parameters_;

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <ctime>  // DEV
-#include <cstdlib>  // DEV
 #include <cmath>
+#include <cstdlib>  // DEV
+#include <ctime>    // DEV
 #include <mutex>
 #include <string>
 
@@ -16,6 +16,7 @@
 #include "core/timing.h"
 #include "filters/pixel_clusters.h"
 #include "filters/pixel_needs.h"
+#include "filters/record_resolve.h"
 #include "filters/records.h"
 #include "filters/surface_records_stages.h"
 
@@ -48,12 +49,6 @@ void check_plan(const SurfaceRecordsPlan& plan, const RenderSettings& settings) 
             "nee (with the method surface_records)");
 }
 
-/// Light of a cluster that no record stands for.
-struct Orphan {
-    int x, cluster;
-    RecordValue light;
-};
-
 /// One band of rows, from first samples to pixels.
 class Band {
   public:
@@ -62,6 +57,7 @@ class Band {
         const TraceKernel& kernel;
         const RenderSettings& settings;
         const SurfaceRecordsPlan& plan;
+        PixelClusters& clusters;  ///< with room for the rows
     };
 
     /// rows: to be made; sampled: those, and around them what their records are fitted to.
@@ -69,16 +65,19 @@ class Band {
         : context_(context),
           tracer_(context.tracer),
           rows_(rows),
-          clusters_(tracer_.task.width, sampled, static_cast<int>(tracer_.task.light_count)),
-          orphans_(static_cast<std::size_t>(rows.end - rows.begin)) {}
+          clusters_(context.clusters),
+          orphans_(static_cast<std::size_t>(rows.end - rows.begin)) {
+        clusters_.begin(sampled);
+    }
 
     void run(StagedRender& out, const std::function<void()>& checkpoint) {
         const auto timed = [&](double& seconds, const auto& stage) {
-            static const bool cpu = getenv("SRCPU");  // DEV
+            static const bool cpu = getenv("SRCPU");                          // DEV
             const double c0 = static_cast<double>(clock()) / CLOCKS_PER_SEC;  // DEV
             const Stopwatch watch;
             stage();
-            seconds += cpu ? static_cast<double>(clock()) / CLOCKS_PER_SEC - c0 : watch.seconds();  // DEV
+            seconds +=
+                cpu ? static_cast<double>(clock()) / CLOCKS_PER_SEC - c0 : watch.seconds();  // DEV
             checkpoint();
         };
         RenderStatistics& statistics = out.render.statistics;
@@ -157,7 +156,8 @@ class Band {
                 ClusterList list = clusters_.clusters(pixel.x, y);
                 const int before = list.count;
                 rays += tracer_.kernel.add_samples(
-                    tracer_.task, {pixel.x, y, pilot, pixel.samples, known_surface(pixel, list),
+                    tracer_.task,
+                    {pixel.x, y, pilot, pixel.samples, known_surface(pixel, list),
                      (pixel.needs & kNeedsShadow) != 0},
                     list);
                 samples += pixel.samples - pilot;
@@ -209,52 +209,9 @@ class Band {
     void resolve(Frame& frame, RenderStatistics& statistics) const {
         std::atomic<std::uint64_t> non_finite = 0;
         for_each_row(rows_, [&](int y) {
-            for (int x = 0; x < clusters_.width(); ++x) {
-                const PixelValues values = resolve_pixel({x, y});
-                store_values(values, {x, y}, frame);
-                if (!is_finite(values.radiance())) ++non_finite;
-            }
+            non_finite += resolve_row({tracer_.task, clusters_, map_}, y, orphans_[row(y)], frame);
         });
         statistics.non_finite_pixels += non_finite;
-    }
-
-    [[nodiscard]] PixelValues resolve_pixel(Pixel at) const {
-        PixelValues values;
-        float samples = 0;
-        int number = 0;
-        clusters_.visit(at.x, at.y, [&](const Cluster& cluster) {
-            const ClusterMeans means = means_of(cluster);
-            samples += cluster.count;
-            const int k = number++;
-            // A mirror is a bounce like any other.
-            glm::vec3* const planes[] = {&values.emission, &values.direct, &values.indirect};
-            *planes[std::min(cluster.mirrors, 2)] += means.emission * cluster.count;
-            glm::vec3& direct = *planes[std::min(cluster.mirrors + 1, 2)];
-            if (cluster.object < 0 || cluster.mirrors >= tracer_.task.max_depth) return;
-            const glm::vec3 reflected = means.albedo * cluster.count;
-            direct += reflected * direct_light(tracer_.task, cluster);
-            if (!has_records()) return;
-            const RecordValue light = light_at(cluster, means, at, k);
-            direct += reflected * glm::vec3(light[3], light[4], light[5]);
-            values.indirect += reflected * glm::vec3(light[0], light[1], light[2]);
-        });
-        const float share = 1.0f / samples;
-        values.emission *= share;
-        values.direct *= share;
-        values.indirect *= share;
-        values.samples = static_cast<std::uint64_t>(samples);
-        return values;
-    }
-
-    [[nodiscard]] RecordValue light_at(const Cluster& cluster, const ClusterMeans& means, Pixel at,
-                                       int number) const {
-        RecordValue light;
-        if (record_light(map_, {at.x, at.y, cluster.object, means.position, means.normal}, light))
-            return light;
-        for (const Orphan& orphan : orphans_[row(at.y)]) {
-            if (orphan.x == at.x && orphan.cluster == number) return orphan.light;
-        }
-        return light;
     }
 
     [[nodiscard]] std::size_t row(int y) const { return static_cast<std::size_t>(y - rows_.begin); }
@@ -262,7 +219,7 @@ class Band {
     Context context_;
     const RecordTracer& tracer_;
     RowRange rows_;
-    PixelClusters clusters_;
+    PixelClusters& clusters_;
     RecordMap map_;
     NeedyRows needy_;
     std::vector<std::vector<Orphan>> orphans_;
@@ -305,12 +262,15 @@ StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings
     const Stopwatch scene_watch;
     const FlatScene flat = flatten(scene);
     const TraceTask task = render_task(scene, flat, settings);
-    statistics.scene_s = scene_watch.seconds();
-    const Stopwatch trace_watch;
     const RecordTracer tracer{task, *kernel.records, settings.threads};
     // Fits reach two cells around those that a pixel is blended from, which are one away.
     const int margin = 3 * plan.cell;
     const int rows = band_rows(size, plan.cell);
+    out.counts.band_rows = rows;
+    PixelClusters clusters(size.width, std::min(rows + 2 * margin, size.height),
+                           static_cast<int>(task.light_count));
+    statistics.scene_s = scene_watch.seconds();
+    const Stopwatch trace_watch;
     int steps = 0;
     const int all_steps = 6 * ((size.height + rows - 1) / rows);
     const auto checkpoint = [&] {
@@ -319,9 +279,10 @@ StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings
             throw Error(ExitCode::interrupted, "interrupted");
     };
     for (int top = 0; top < size.height; top += rows) {
+        ++out.counts.bands;
         const RowRange made{top, std::min(top + rows, size.height)};
         const RowRange sampled{std::max(top - margin, 0), std::min(made.end + margin, size.height)};
-        Band({tracer, kernel, settings, plan}, made, sampled).run(out, checkpoint);
+        Band({tracer, kernel, settings, plan, clusters}, made, sampled).run(out, checkpoint);
     }
     statistics.trace_s = trace_watch.seconds();
     return out;

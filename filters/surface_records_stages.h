@@ -21,6 +21,8 @@ struct StageTimes {
 struct StageCounts {
     std::uint64_t needy_pixels = 0;
     std::uint64_t records = 0;
+    int bands = 0;
+    int band_rows = 0;
 };
 
 struct StagedRender {
