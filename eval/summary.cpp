@@ -130,6 +130,10 @@ GroupSummary summarise_group(const std::vector<const Json*>& all) {
     group.metrics = all_metrics_of(rows);
     group.region_psnr_float_db = region_metric(rows, "psnr_float_db");
     set_limits(group, rows.front()->value("reference_error", Json()));
+    if (const auto predicted = values_of(rows, "facts", "predicted_psnr_float_db");
+        !predicted.empty()) {
+        group.predicted_db = median(predicted);
+    }
     group.times_s = values_of(rows, "time_s", "total");
     group.time_s = median(group.times_s);
     group.reconstruct_s = median(values_of(rows, "time_s", "reconstruct"));
@@ -263,6 +267,7 @@ Json summary_json(const GroupSummary& g) {
               {"relmse_noise", estimate_json(g.relmse_noise)},
               {"relmse_bias", estimate_json(g.relmse_bias)},
               {"reference_db", g.reference_db ? Json(*g.reference_db) : Json()},
+              {"predicted_psnr_float_db", g.predicted_db ? Json(*g.predicted_db) : Json()},
               {"limited_by_reference", flag_json(g.is_limited)},
               {"limited_regions", limited_regions_json(g)},
               {"group", g.group},

@@ -138,6 +138,7 @@ std::span<const MethodOption> method_options() {
     static const std::vector<MethodOption> rows = [] {
         std::vector<MethodOption> all(std::begin(kOptions), std::end(kOptions));
         for (const MethodOption& row : surface_records_rows()) all.push_back(row);
+        for (const MethodOption& row : auto_rows()) all.push_back(row);
         return all;
     }();
     return rows;

@@ -25,6 +25,7 @@ constexpr std::string_view kVariationOptions[] = {"variation_rule", "variation_b
 constexpr std::string_view kSurfaceRecordsOptions[] = {
     "pilot_spp", "edge_spp",  "cell", "levels", "record_paths", "refined_record_paths",
     "fit_sigma", "refine_tau"};
+constexpr std::string_view kAutoOptions[] = {"time_budget"};
 
 // clang-format off
 const Method kMethods[] = {
@@ -35,6 +36,7 @@ const Method kMethods[] = {
     {"variation", kVariationOptions, "a pixel is sampled until its samples vary little, spp at most", render_variation},
     {"surface_records", kSurfaceRecordsOptions,
      "exact coverage and direct light, indirect light interpolated on surfaces", run_surface_records},
+    {"auto", kAutoOptions, "what a pilot says is best for the time", run_auto},
 };
 // clang-format on
 

@@ -13,6 +13,7 @@
 
 #include "core/option_row.h"
 #include "core/render.h"
+#include "filters/auto_options.h"
 #include "filters/schemes.h"
 #include "filters/surface_records_options.h"
 
@@ -88,6 +89,7 @@ struct MethodParameters {
     /// @}
 
     SurfaceRecordsOptions surface_records;  ///< of the method of that name
+    AutoOptions planner;                    ///< of the method auto
 };
 
 /// An option of methods.
