@@ -13,6 +13,7 @@
 #include "core/files.h"
 #include "core/image_io.h"
 #include "core/planes.h"
+#include "filters/schemes.h"
 #include "tests/catch.h"
 #include "tests/program.h"
 #include "tests/region_frames.h"
