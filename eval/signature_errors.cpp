@@ -97,7 +97,7 @@ SignatureValues deviation(const SignatureInput& input) {
         double worst = 0;
         for (const glm::ivec2 p : pixels) {
             const double error = largest(glm::abs(at(image, p) - expected)) / scale;
-            if (!(error <= worst)) worst = error;
+            if (!std::isnan(worst) && !(error <= worst)) worst = error;  // NaN stays
         }
         return worst;
     });

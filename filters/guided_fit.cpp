@@ -74,6 +74,7 @@ struct Fit {
         glm::dvec3 value(0.0);
         for (std::size_t i = 0; i < static_cast<std::size_t>(terms_of(order)); ++i)
             value += terms[i] * glm::dvec3(coefficients[i]);
+        if (!is_finite(glm::vec3(value))) value = glm::dvec3(coefficients[0]);  // out of reach
         return glm::clamp(value, glm::dvec3(least), glm::dvec3(most));
     }
 };
