@@ -199,6 +199,7 @@ class Runner {
         settings.size = {64, 64};
         settings.reduction = 1;
         settings.spp = 64;
+        settings.camera_shift = {};
         const std::string key = frame_key(scene, settings);
         const auto known = rates_.find(key);
         if (known != rates_.end()) return known->second;

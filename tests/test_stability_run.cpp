@@ -91,7 +91,7 @@ TEST_CASE("the report shows stability beside time and error", "[stability]") {
     tiny.run();
     const ReportData data = read_report_data(tiny.directory);
     const std::string html = stability_html(data);
-    for (const char* text : {"shimmer", "0.25 px", "0.5 px", "elasticity", "spread", "worst seed",
+    for (const char* text : {"shimmer", "0.25 px", "0.5 px (noise)", "elasticity", "spread", "worst seed",
                              "fallback", "mean.f2.w3", "psnr_float_db"}) {
         INFO(text);
         CHECK(html.find(text) != std::string::npos);
