@@ -35,6 +35,17 @@ double scale_normal_cosine(SchemeParameters& parameters, double factor) {
     return angle;
 }
 
+double scale_order(SchemeParameters& parameters, double factor) {
+    parameters.order = std::clamp(parameters.order + (factor < 1 ? -1 : 1), 0, 2);
+    return parameters.order;
+}
+
+double scale_guide(SchemeParameters& parameters, double factor) {
+    constexpr int kMost = 16;
+    parameters.guide_scale = std::clamp(parameters.guide_scale + (factor < 1 ? -1 : 1), 1, kMost);
+    return parameters.guide_scale;
+}
+
 /// Multiplies a parameter by about the factor; returns what it is then.
 struct SchemeScale {
     std::string_view option;
@@ -44,6 +55,8 @@ struct SchemeScale {
 constexpr SchemeScale kSchemeScales[] = {
     {"window", scale_window},
     {"min_normal_cosine", scale_normal_cosine},
+    {"order", scale_order},
+    {"guide_scale", scale_guide},
 };
 
 /// Both ends, by a function that multiplies the parameter and returns what it is then.

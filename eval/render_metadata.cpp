@@ -77,6 +77,7 @@ nlohmann::json render_json(const MethodRender& result, double write_s) {
               {"scene", s.scene_s},
               {"trace", s.trace_s},
               {"reconstruct", result.reconstruct_s},
+              {"stages", result.stage_s},
               {"write", write_s}}},
             {"samples", s.samples},
             {"rays", s.rays},

@@ -86,9 +86,9 @@ MethodRender run_auto(const MethodRequest& request, const Progress& progress) {
     statistics.scene_s += pilot.scene_s;
     statistics.trace_s += pilot.spent_s;
     out.facts.update(facts_of(plans, pilot, run));
-    out.facts["stage_s"]["auto_pilot"] = pilot.spent_s;
-    out.facts["stage_s"]["auto_run"] = run_s;
-    out.facts["stage_s"]["auto_predicted"] = plans.chosen().predicted_s;
+    out.stage_s["auto_pilot"] = pilot.spent_s;
+    out.stage_s["auto_run"] = run_s;
+    out.stage_s["auto_predicted"] = plans.chosen().predicted_s;
     return out;
 }
 

@@ -117,6 +117,8 @@ struct MethodRender {
     double reconstruct_s = 0;  ///< seconds beside tracing and building the scene
     /// What the method decided or counted, by name, for results and people: an object.
     nlohmann::json facts = nlohmann::json::object();
+    /// Seconds by stage, for people: an object. Differs from run to run, as facts do not.
+    nlohmann::json stage_s = nlohmann::json::object();
     /// What it did where. Of `adaptive`: Calculated, the pass in which a pixel got its value, and
     /// Explicit, 1 where it was traced (the thesis's filmMapsCalculated and
     /// filmMapWasExplicitCalculated).
