@@ -12,7 +12,7 @@
 namespace vecino {
 namespace {
 
-constexpr std::size_t kLeastPixels = 4096;
+constexpr double kLeastPixels = 3600;
 constexpr int kFewSpp = 4, kManySpp = 16;  ///< for a packet of 16 lanes all the same
 
 // Offsets of the seed: no pilot frame shares its points with another or with the final frame.
@@ -177,7 +177,7 @@ class PilotRun {
         : frames_(frames), budget_s_(budget_s) {
         pilot_.found.pixels = frames.pixels(1);
         pilot_.found.has_records_method = frames.settings().light_sampling == LightSampling::nee;
-        while (frames.size(pilot_.reduction).area() > kLeastPixels) ++pilot_.reduction;
+        while (frames.pixels(pilot_.reduction) > look_pixels()) ++pilot_.reduction;
     }
 
     Pilot run() {
@@ -200,17 +200,26 @@ class PilotRun {
     }
 
   private:
+    /// Of the first frames: they take some 600 ns a pixel, and where threads have little to do
+    /// their start is what counts.
+    [[nodiscard]] double look_pixels() const {
+        constexpr double kShare = 0.02, kPixel_s = 600e-9;
+        return std::clamp(kShare * budget_s_.value_or(0) / kPixel_s, 4096.0, 65536.0);
+    }
+
     /// First, small frames of each: what things cost. The quickest of a few count, where there is
     /// time for them: other programs come between.
     void look() {
         look_once();
         for (int i = 1; budget_s_ && i < kLooks; ++i) {
-            if (spent_s() * (i + 1) / i > kPilotShare * *budget_s_) break;
+            const double share = i == 1 ? 2 * kPilotShare : kPilotShare;
+            if (spent_s() > share * *budget_s_) break;
             const CostRates before = pilot_.rates;
             look_once();
             pilot_.rates = quicker(before, pilot_.rates);
         }
-        if (!budget_s_) pilot_.rates = nominal_rates(rays_per_path_);
+        const CostRates nominal = nominal_rates(rays_per_path_);
+        pilot_.rates = budget_s_ ? without_outliers(pilot_.rates, nominal) : nominal;
     }
 
     void look_once() {
@@ -237,8 +246,10 @@ class PilotRun {
             budget_s_ ? *budget_s_
                       : frames_.settings().spp * pilot_.found.pixels * pilot_.rates.path_sample_s;
         const double left_s = kPilotShare * budget_s - (budget_s_ ? spent_s() : 0);
-        for (int reduction = 1; reduction <= pilot_.reduction; ++reduction) {
-            if (frames_.size(reduction).area() > kMostPixels) continue;
+        const double least = std::min(kLeastPixels, frames_.pixels(pilot_.reduction));
+        for (int reduction = 1; frames_.pixels(reduction) >= least && reduction <= kMostReduction;
+             ++reduction) {
+            if (frames_.pixels(reduction) > kMostPixels) continue;
             if (cost(reduction) <= left_s) return reduction;
         }
         return 0;
@@ -362,7 +373,8 @@ class PilotRun {
     static constexpr double kUsualGrowth = 3.8;       ///< of records by halved cells
     static constexpr double kUsualNeedySlope = 1.15;  ///< needy pixels to the size of the frame
     static constexpr double kUsualBias = 1e-6;
-    static constexpr std::size_t kMostPixels = std::size_t{1} << 20;
+    static constexpr int kMostReduction = 2048;
+    static constexpr double kMostPixels = 1 << 20;
 
     PilotFrames& frames_;
     std::optional<double> budget_s_;

@@ -68,12 +68,31 @@ double factor_that_fits(const PilotFindings& found, const CostRates& rates,
 /// Plans of the method itself, by growing budgets: their numbers of samples are scaled.
 constexpr int kSteps[] = {2, 4, 8, 16, 32, 64, 128};
 
+constexpr double CostRates::*kRates[] = {&CostRates::path_sample_s, &CostRates::first_sample_s,
+                                         &CostRates::pixel_s,       &CostRates::edge_sample_s,
+                                         &CostRates::record_path_s, &CostRates::record_s};
+
 }  // namespace
 
 CostRates nominal_rates(double rays_per_path) {
     constexpr double kRay_s = 8.5e-9;
     const double path_s = rays_per_path * kRay_s;
     return {path_s, 12.6e-9, 95e-9, 11e-9, 0.55 * path_s, 0.7e-6};
+}
+
+CostRates without_outliers(const CostRates& rates, const CostRates& nominal) {
+    constexpr double kMostAbove = 4;
+    CostRates out = rates;
+    std::array<double, std::size(kRates)> slowness{};
+    std::ranges::transform(kRates, slowness.begin(),
+                           [&](auto rate) { return rates.*rate / nominal.*rate; });
+    std::array<double, std::size(kRates)> sorted = slowness;
+    std::ranges::sort(sorted);
+    // Of an even number the lower middle: outliers lie above.
+    const double most = kMostAbove * sorted[(sorted.size() - 1) / 2];
+    for (std::size_t i = 0; most > 0 && i < sorted.size(); ++i)
+        out.*kRates[i] = std::min(slowness[i], most) * nominal.*kRates[i];
+    return out;
 }
 
 double surface_records_cost(const PilotFindings& found, const CostRates& rates,
@@ -146,7 +165,9 @@ Plans choose_schedule(const PilotFindings& found, const CostRates& rates, double
     const Schedule& records = *plans.records;
     const double at_most_s = std::max(1.1 * seconds, seconds + 0.02);
     const bool path_is_late = path.predicted_s > at_most_s;
-    if (records.predicted_s > at_most_s && records.predicted_s > path.predicted_s) {
+    // Its least plan shows far more than one packet of paths.
+    const double allowed_s = path_is_late ? 2 * path.predicted_s : at_most_s;
+    if (records.predicted_s > std::max(allowed_s, at_most_s)) {
         plans.reason = "not even the least plan of surface_records fits";
     } else if (!path.predicted_error || path_is_late) {
         plans.takes_path = false;

@@ -32,6 +32,10 @@ constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 6;
 /// Its bias falls so much with cells of half the side.
 constexpr double kBiasPerHalving = 8;
 
+/// Rates with none far above what the others say of the machine, held against the nominal ones: a
+/// stage that seems to take that long was interrupted by another program.
+CostRates without_outliers(const CostRates& rates, const CostRates& nominal);
+
 /// Errors are means of squared differences of sRGB-encoded values in [0,1], as of psnr_float_db.
 struct PathErrors {
     double at_16_spp = 0;

@@ -73,6 +73,21 @@ TEST_CASE("a plan fills its budget", "[auto]") {
     }
 }
 
+TEST_CASE("a stage that was interrupted is not taken for a slow one", "[auto]") {
+    const CostRates nominal = nominal_rates(3.4);
+    CostRates slow = nominal;  // a machine of half the speed
+    for (double CostRates::*rate :
+         {&CostRates::path_sample_s, &CostRates::first_sample_s, &CostRates::pixel_s,
+          &CostRates::edge_sample_s, &CostRates::record_path_s, &CostRates::record_s})
+        slow.*rate *= 2;
+    CHECK(without_outliers(slow, nominal).pixel_s == Approx(slow.pixel_s));
+    CostRates interrupted = slow;
+    interrupted.edge_sample_s *= 50;
+    const CostRates sane = without_outliers(interrupted, nominal);
+    CHECK(sane.edge_sample_s == Approx(4 * slow.edge_sample_s));
+    CHECK(sane.path_sample_s == Approx(slow.path_sample_s));
+}
+
 TEST_CASE("more time is never expected to give a worse image", "[auto]") {
     const PilotFindings found = usual_findings();
     const CostRates rates = nominal_rates(3.4);

@@ -22,6 +22,12 @@ MethodRequest small_request(const Scene& scene) {
     return {scene, settings, {}};
 }
 
+/// What does not hang on the clock.
+nlohmann::json without_times(nlohmann::json facts) {
+    facts.erase("stage_s");
+    return facts;
+}
+
 }  // namespace
 
 TEST_CASE("methods have names of their own and read options that exist", "[methods]") {
@@ -60,7 +66,7 @@ TEST_CASE("every method gives the same bits with any number of threads", "[metho
             request.settings.threads = threads;
             const MethodRender many = render(method, request);
             CHECK(many.render.frame.radiance == one.render.frame.radiance);
-            CHECK(many.facts == one.facts);
+            CHECK(without_times(many.facts) == without_times(one.facts));
         }
     }
 }
