@@ -70,13 +70,16 @@ struct Pair {
     Float u, v;
 };
 
-/// The random numbers of W samples of one pixel. A path's dimensions come in pairs: 0 the position
-/// in the pixel, 1 + 2k the light sample and 2 + 2k the direction at vertex k.
+/// The random numbers of W samples, of one pixel or of one each. A path's dimensions come in pairs:
+/// 0 the position in the pixel, 1 + 2k the light sample and 2 + 2k the direction at vertex k.
 class PathRandom {
   public:
     PathRandom(const TraceTask& task, std::uint32_t pixel, Uint sample)
+        : PathRandom(task, splat(pixel), sample) {}
+
+    PathRandom(const TraceTask& task, Uint pixel, Uint sample)
         : seed_(splat(task.seed)),
-          pixel_(splat(pixel)),
+          pixel_(pixel),
           sample_(sample),
           streams_(task.streams),
           sobol_(task.sobol) {}

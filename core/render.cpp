@@ -50,7 +50,7 @@ Render render(const Scene& scene, const RenderSettings& settings, const Progress
     const Extent size = reduced(settings.size, settings.reduction);
     Render result{make_frame(size, planes_to_make(settings)), statistics};
     if (scene.pattern == Pattern::xy_gradient) {
-        fill_pattern(result.frame);
+        fill_pattern(result.frame, size);
         return result;
     }
     PixelTracer tracer(scene, settings, variance_of(settings));

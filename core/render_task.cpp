@@ -2,6 +2,7 @@
 #include "core/render_task.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/error.h"
@@ -22,6 +23,15 @@ bool is_by_area(const TraceTask& task, LightKind kind) {
     return kind != LightKind::sphere;
 }
 
+/// The ray through every uv becomes the one through uv + shift / size.
+void shift_camera(const RenderSettings& s, TraceTask& task) {
+    if (s.camera_shift == glm::vec2(0.0f)) return;
+    const float right = 2.0f * s.camera_shift.x / static_cast<float>(s.size.width);
+    const float up = -2.0f * s.camera_shift.y / static_cast<float>(s.size.height);
+    for (int c = 0; c < 3; ++c)
+        task.camera_forward[c] += right * task.camera_right[c] + up * task.camera_up[c];
+}
+
 }  // namespace
 
 void check_settings(const RenderSettings& s) {
@@ -33,6 +43,11 @@ void check_settings(const RenderSettings& s) {
     require(s.reduction >= 1, "reduction", s.reduction, "1 or more");
     require(s.spp >= 1, "spp", s.spp, "1 or more");
     require(s.max_depth >= 0 && s.max_depth <= 1000, "max_depth", s.max_depth, "0 to 1000");
+    for (const float shift : {s.camera_shift.x, s.camera_shift.y}) {
+        if (std::abs(shift) <= kMaxSide) continue;
+        throw Error(ExitCode::usage,
+                    "camera_shift: found " + std::to_string(shift) + ", allowed: -65536 to 65536");
+    }
     require(s.threads >= 0 && s.threads <= 1024, "threads", s.threads, "1 to 1024");
 }
 
@@ -59,6 +74,7 @@ TraceTask render_task(const Scene& scene, const FlatScene& flat, const RenderSet
         static_cast<float>(settings.size.width) / static_cast<float>(settings.size.height);
     const Extent size = reduced(settings.size, settings.reduction);
     TraceTask task = trace_task(scene, flat, aspect);
+    shift_camera(settings, task);
     task.width = size.width;
     task.height = size.height;
     task.max_depth = settings.max_depth;

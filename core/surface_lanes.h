@@ -40,6 +40,8 @@ class Tracer {
     Ray primary_ray(Float pixel_x, Float pixel_y) const;
     /// Of rays whose direction is unit.
     Surface trace(const Ray& ray, Mask active);
+    /// The same where it is known that the rays hit a quad or a sphere: without tracing them.
+    Surface revisit(const Ray& ray, std::int32_t surface, Mask active) const;
     /// Whether something lies between the origin and t_far.
     Mask occluded(const Ray& ray, Float t_far, Mask active);
     /// Radiance that surfaces send back along the rays that hit them.
@@ -210,6 +212,29 @@ inline void Tracer::interpolate_normals(const HitPacket<W>& hits, const Ray& ray
     const Float3 facing = select(s.front, upright, -upright);
     const Mask usable = on_triangle & (length2 > 1e-12f) & (dot(facing, ray.direction) < 0.0f);
     s.shading_normal = select(usable, facing, s.shading_normal);
+}
+
+inline Surface Tracer::revisit(const Ray& ray, std::int32_t surface, Mask active) const {
+    const bool on_sphere = static_cast<std::uint32_t>(surface) >= task_.first_sphere;
+    const Int index = Int{} + surface;
+    const Float3 shape = fields(kShape, index);
+    const Float offset_or_radius = field(kShape + 3, index);
+    Float t = (offset_or_radius - dot(shape, ray.origin)) / dot(shape, ray.direction);
+    if (on_sphere) {
+        const Float3 to_center = shape - ray.origin;
+        const Float middle = dot(to_center, ray.direction);
+        const Float3 off = to_center - ray.direction * middle;
+        const Float half2 = offset_or_radius * offset_or_radius - dot(off, off);
+        const Float half = sqrt(max(half2, Float{}));
+        t = select(middle > half, middle - half, middle + half);
+    }
+    HitPacket<W> hits;
+    const std::uint32_t kind = on_sphere ? kSpheres : kQuads;
+    store(hits.ray.t_far, t);
+    store(hits.geometry, splat(kind));
+    store(hits.primitive,
+          splat(static_cast<std::uint32_t>(surface) - (on_sphere ? task_.first_sphere : 0u)));
+    return shade(ray, hits, active);
 }
 
 inline void record_first_hit(const TraceTask& task, const Surface& s, int lane,

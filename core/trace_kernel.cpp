@@ -174,6 +174,31 @@ class PathPacket {
         }
     }
 
+    /// All light that reaches a surface but that straight from emitters, as if its albedo were 1.
+    /// Light of the background counts as direct. Returns one over the distances to what the bounces
+    /// hit; 0 where that is nothing.
+    Float gather(Tracer& tracer, const Surface& surface, Mask active, SampleBlock& block, int at) {
+        surface_ = surface;
+        throughput_ = {splat(1.0f), splat(1.0f), splat(1.0f)};
+        mirror_ = Mask{};
+        weighed_ = Mask{};
+        const Ray ray = bounce_ray(random_.pair(2));
+        active_ = active & (dot(ray.direction, surface_.normal) > 0.0f);
+        if (!any(active_)) return Float{};
+        if (task_.max_depth < 2) {
+            if (task_.has_background) add(block.direct, at, find_background(tracer, ray));
+            return Float{};
+        }
+        add(block.direct, at, follow(tracer, ray));
+        const Float nearness = select(active_, 1.0f / surface_.distance, Float{});
+        for (int bounce = 2; bounce <= task_.max_depth; ++bounce) {
+            active_ &= (throughput_.x + throughput_.y + throughput_.z) > 0.0f;
+            if (!any(active_)) break;
+            add(block.indirect, at, next_vertex(tracer, bounce));
+        }
+        return nearness;
+    }
+
   private:
     /// Light that reaches the path by its bounce-th bounce; moves on to the next vertex where one
     /// is needed.
@@ -305,17 +330,36 @@ std::uint64_t trace_centres(const TraceTask& task, const SampleRange& range, Fir
         const Float x = __builtin_convertvector(lane + range.x, Float) + 0.5f;
         const Ray ray = tracer.primary_ray(x, splat(static_cast<float>(range.y) + 0.5f));
         const Surface surface = tracer.trace(ray, active);
-        for (int i = 0; i < W && at + i < range.count; ++i)
+        const Float3 emission =
+            select(surface.hit, tracer.emission(surface), splat3(task.background));
+        for (int i = 0; i < W && at + i < range.count; ++i) {
             record_first_hit(task, surface, i, out[at + i]);
+            out[at + i].emission[0] = emission.x[i];
+            out[at + i].emission[1] = emission.y[i];
+            out[at + i].emission[2] = emission.z[i];
+        }
     }
     return tracer.rays();
 }
+
+}  // namespace
+}  // namespace vecino
+
+// What builds on all of the above.
+#include "core/cluster_lanes.h"
+#include "core/gather_lanes.h"
+
+namespace vecino {
+namespace {
+
+constexpr RecordKernel kRecordKernel = {trace_pilot, add_samples, gather_record};
 
 }  // namespace
 
 #define VECINO_CONCAT(a, b) a##b
 #define VECINO_KERNEL_NAME(width) VECINO_CONCAT(kTraceKernel, width)
 extern const TraceKernel VECINO_KERNEL_NAME(VECINO_WIDTH);
-const TraceKernel VECINO_KERNEL_NAME(VECINO_WIDTH) = {VECINO_WIDTH, trace_samples, trace_centres};
+const TraceKernel VECINO_KERNEL_NAME(VECINO_WIDTH) = {VECINO_WIDTH, trace_samples, trace_centres,
+                                                      &kRecordKernel};
 
 }  // namespace vecino

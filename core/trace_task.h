@@ -12,6 +12,7 @@ namespace vecino {
 
 class EmbreeScene;
 class PacketLog;
+struct RecordKernel;  // record_task.h
 
 /// What shading knows of a surface: a planar quad, a triangle or a sphere.
 enum SurfaceField {
@@ -145,6 +146,7 @@ struct FirstHitRecord {
     float position_world[3];
     float normal_world[3];
     float albedo[3];
+    float emission[3];  ///< written by trace_centres alone; the background of a miss
     float distance_world;
     std::int32_t object_id;
 };
@@ -177,6 +179,7 @@ struct TraceKernel {
     /// The first hits of rays through the centres of pixels (x .. x + count - 1, y); count <=
     /// kBlockSamples.
     std::uint64_t (*trace_centres)(const TraceTask&, const SampleRange&, FirstHitRecord*);
+    const RecordKernel* records;  ///< of the method surface_records
 };
 
 /// The kernel for a width, or null if this build or this machine lacks it.

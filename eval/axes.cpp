@@ -78,9 +78,10 @@ void require_one_kind(const JsonValue& json) {
 }
 
 std::vector<JsonValue> listed(const std::string& key, const JsonValue& value) {
-    const bool one_size = key == "size" && value.raw().is_array() && !value.raw().empty() &&
+    const bool is_pair = key == "size" || key == "camera_shift";
+    const bool one_pair = is_pair && value.raw().is_array() && !value.raw().empty() &&
                           !value.raw().front().is_array();
-    if (one_size || !value.raw().is_array()) return {value};
+    if (one_pair || !value.raw().is_array()) return {value};
     auto values = value.elements();
     if (values.empty()) value.fail("at least one value");
     return values;

@@ -144,6 +144,8 @@ ExitCode render_image(const RenderArguments& arguments, const RenderSettings& se
         render_metadata(arguments.scene, settings, s.scene_s + s.trace_s + result.reconstruct_s);
     describe_method(method, request.parameters, metadata);
     const Stopwatch write_watch;
+    describe_schedule(result, metadata);
+    report_schedule(result);
     save_frame(frame, arguments.output, metadata);
     print_result(arguments, result, size_text(frame.size()), write_watch.seconds());
     return report_non_finite(s, arguments.output);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/json_schema.h"
+#include "filters/method_rows.h"
 #include "filters/methods.h"
 #include "filters/option_names.h"
 
@@ -134,7 +135,13 @@ const MethodOption kOptions[] = {
 }  // namespace
 
 std::span<const MethodOption> method_options() {
-    return kOptions;
+    static const std::vector<MethodOption> rows = [] {
+        std::vector<MethodOption> all(std::begin(kOptions), std::end(kOptions));
+        for (const MethodOption& row : surface_records_rows()) all.push_back(row);
+        for (const MethodOption& row : auto_rows()) all.push_back(row);
+        return all;
+    }();
+    return rows;
 }
 
 }  // namespace vecino

@@ -13,7 +13,9 @@
 
 #include "core/option_row.h"
 #include "core/render.h"
+#include "filters/auto_options.h"
 #include "filters/schemes.h"
+#include "filters/surface_records_options.h"
 
 namespace vecino {
 
@@ -85,6 +87,9 @@ struct MethodParameters {
     /// have doubled. 0: 16, or 512 where light is found by chance and few samples find none.
     int min_spp = 0;
     /// @}
+
+    SurfaceRecordsOptions surface_records;  ///< of the method of that name
+    AutoOptions planner;                    ///< of the method auto
 };
 
 /// An option of methods.
@@ -112,6 +117,8 @@ struct MethodRender {
     double reconstruct_s = 0;  ///< seconds beside tracing and building the scene
     /// What the method decided or counted, by name, for results and people: an object.
     nlohmann::json facts = nlohmann::json::object();
+    /// Seconds by stage, for people: an object. Differs from run to run, as facts do not.
+    nlohmann::json stage_s = nlohmann::json::object();
     /// What it did where. Of `adaptive`: Calculated, the pass in which a pixel got its value, and
     /// Explicit, 1 where it was traced (the thesis's filmMapsCalculated and
     /// filmMapWasExplicitCalculated).

@@ -26,6 +26,8 @@ constexpr ChoiceKind kWeighting{kWeightings};
 constexpr ChoiceKind kMetric{kMetrics};
 constexpr RealKind kCosine{{-1.0, 1.0}};
 constexpr BooleanKind kSwitch{};
+constexpr IntegerKind kOrder{0, 2};
+constexpr IntegerKind kGuideScale{1, 16};
 
 void set_window(SchemeParameters& parameters, const JsonValue& json) {
     const int window = kWindow.read(json);
@@ -52,6 +54,12 @@ std::string cosine_slug(const SchemeParameters& parameters) {
 
 using Parameters = SchemeParameters;
 
+/// "o2" or "g4": a letter and a number.
+template <char kLetter, int Parameters::*kMember>
+std::string number_slug(const Parameters& parameters) {
+    return kLetter + std::to_string(parameters.*kMember);
+}
+
 const SchemeOption kOptions[] = {
     {"window", "--window", kWindowAllowed, "side of the neighbourhood, in low-resolution pixels",
      set_window, window_slug, window_schema},
@@ -69,6 +77,12 @@ const SchemeOption kOptions[] = {
      "whether a pixel counts among its own neighbours", read_into<kSwitch, &Parameters::use_centre>,
      [](const Parameters& p) { return std::string(p.use_centre ? "centre" : "no_centre"); },
      schema_of<kSwitch>},
+    {"order", "--order", "0, 1, 2", "highest order of the polynomials that are fitted",
+     read_into<kOrder, &Parameters::order>, number_slug<'o', &Parameters::order>,
+     schema_of<kOrder>},
+    {"guide_scale", "", "1 to 16", "samples of the guide per pixel, along each axis",
+     read_into<kGuideScale, &Parameters::guide_scale>, number_slug<'g', &Parameters::guide_scale>,
+     schema_of<kGuideScale>},
 };
 
 }  // namespace

@@ -1,0 +1,475 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the samples of pixels see, surface by surface: the kernels behind the first two stages of
+// the method surface_records. Included only by trace_kernel.cpp, after what it defines.
+#pragma once
+
+#include "core/lanes.h"
+#include "core/polygon_lanes.h"
+#include "core/record_task.h"
+#include "core/surface_lanes.h"
+
+namespace vecino {
+namespace {
+
+// Shading normals within 45 degrees of the first belong to the same side of a surface.
+constexpr float kSameSide = 0.7f;
+// Samples whose light is looked at before a cluster counts as all in light or all in shadow.
+constexpr float kClearSamples = 16.0f;
+// Dimensions of the points on emitters that are looked at one by one: beyond those of any path.
+constexpr std::uint32_t kLightDimensions = 0x10000;
+
+inline bool picks_lights(const TraceTask& task) {
+    return task.light_count > static_cast<std::uint32_t>(kMostExactLights);
+}
+
+struct LightLanes {
+    Float exact, open, seen;
+};
+
+/// What W samples saw.
+struct SampleLanes {
+    Surface surface;  ///< by way of mirrors; its albedo is times theirs
+    Int object;       ///< stands for it and for them
+    Int mirrors;
+    Float distance;  ///< from the camera
+    Float3 emission;
+    Mask looked;  ///< whose light was looked at
+    LightLanes lights[kMostExactLights];
+    Float3 picked;
+};
+
+inline Surface select(Mask m, const Surface& a, const Surface& b) {
+    Surface s;
+    s.hit = select(m, a.hit, b.hit);
+    s.position = select(m, a.position, b.position);
+    s.geometric_normal = select(m, a.geometric_normal, b.geometric_normal);
+    s.normal = select(m, a.normal, b.normal);
+    s.shading_normal = select(m, a.shading_normal, b.shading_normal);
+    s.albedo = select(m, a.albedo, b.albedo);
+    s.offset = select(m, a.offset, b.offset);
+    s.distance = select(m, a.distance, b.distance);
+    s.index = select(m, a.index, b.index);
+    s.front = select(m, a.front, b.front);
+    s.direction = select(m, a.direction, b.direction);
+    return s;
+}
+
+inline Int object_of(const TraceTask& task, const Surface& s) {
+    const auto* const table = reinterpret_cast<const float*>(task.surfaces.object_id);
+    return select(s.hit, (Int)gather(table, s.index), Int{} - 1);
+}
+
+inline Emitter emitter_number(const TraceTask& task, std::uint32_t number) {
+    const auto* const fields = reinterpret_cast<const float*>(task.lights + number);
+    return read_emitter([&](std::size_t place) { return splat(fields[place]); });
+}
+
+/// Light over pi from one point on an emitter.
+inline void look_at_point(Tracer& tracer, const Surface& s, const Emitter& light,
+                          const LightPoint& point, Mask asked, LightLanes& out) {
+    const Float3 from = ray_origin(s);
+    const Ray shadow = {from, point.position + point.normal * light.offset - from};
+    const Float distance = sqrt(dot(shadow.direction, shadow.direction));
+    const Float cosine = dot(shadow.direction, s.shading_normal) / distance;
+    const Mask lit = asked & (point.inverse_pdf > 0.0f) & (cosine > 0.0f);
+    const Mask tested = lit & (dot(shadow.direction, s.normal) > 0.0f);
+    if (!any(lit)) return;
+    out.open = select(lit, cosine * point.inverse_pdf * (1.0f / kPi), Float{});
+    if (!any(tested)) return;
+    const Mask visible = tested & ~tracer.occluded(shadow, splat(1.0f), tested);
+    out.seen = select(visible, out.open, Float{});
+}
+
+/// active: samples whose surface can reflect light; asked: those that want a shadow ray.
+inline LightLanes look_at_light(Tracer& tracer, const TraceTask& task, const Surface& s,
+                                std::uint32_t number, Mask active, Mask asked, Pair random) {
+    const Emitter light = emitter_number(task, number);
+    const Float3 from = ray_origin(s);
+    LightLanes out{};
+    out.exact = select(active, exact_irradiance(light, from, s.shading_normal), Float{});
+    const Mask facing = asked & (out.exact > 0.0f);
+    if (!any(facing)) return out;
+    const PickedLight picked{light, splat(1.0f), random.u};
+    const LightSample sample = sample_light(task, picked, from, random);
+    look_at_point(tracer, s, light, sample.point, facing, out);
+    return out;
+}
+
+/// Light over pi by one of many emitters.
+inline Float3 look_at_picked(Tracer& tracer, const TraceTask& task, const Surface& s, Mask active,
+                             Pair random) {
+    const Float3 from = ray_origin(s);
+    const PickedLight light = pick_light(task, {from, s.shading_normal}, random.u);
+    const LightSample sample = sample_light(task, light, from, {light.u, random.v});
+    LightLanes lanes{};
+    look_at_point(tracer, s, light, sample.point, active & (light.probability > 0.0f), lanes);
+    const Float share = 1.0f / max(light.probability, splat(1e-30f));
+    return light.radiance * (lanes.seen * share);
+}
+
+inline Mask reflects(const Surface& s) {
+    return s.hit & ((s.albedo.x + s.albedo.y + s.albedo.z) > 0.0f);
+}
+
+/// asked(light): samples whose light from that emitter wants a shadow ray.
+template <class Asked>
+inline void look_at_lights(Tracer& tracer, const TraceTask& task, const PathRandom& random,
+                           const Asked& asked, SampleLanes& sample) {
+    sample.looked = Mask{};
+    sample.picked = Float3{};
+    for (LightLanes& light : sample.lights) light = LightLanes{};
+    if (task.max_depth < 1) return;
+    // Light that has come by mirrors has bounces behind it.
+    const Mask active = reflects(sample.surface) & (sample.mirrors < task.max_depth);
+    if (!any(active)) return;
+    if (picks_lights(task)) {
+        sample.looked = active;
+        sample.picked = look_at_picked(tracer, task, sample.surface, active, random.pair(1));
+        return;
+    }
+    for (std::uint32_t i = 0; i < task.light_count; ++i) {
+        const Mask wanted = active & asked(static_cast<int>(i));
+        const Pair pair = any(wanted) ? random.pair(i == 0 ? 1 : kLightDimensions + i) : Pair{};
+        sample.lights[i] = look_at_light(tracer, task, sample.surface, i, active, wanted, pair);
+        sample.looked |= wanted;
+    }
+}
+
+/// A number that tells a surface seen through mirrors from others. Misses stay negative.
+inline Int through_mirror(Int mirror, Int object) {
+    const Uint mixed = ((Uint)mirror * 0x9E3779B1u) ^ ((Uint)object * 0x85EBCA77u);
+    const Int number = (Int)((mixed ^ (mixed >> 15)) & 0x3FFFFFFFu) | 0x40000000;
+    return select(object < 0, ~number, number);
+}
+
+/// Goes on from mirrors to what they show, as far as the depth of paths allows.
+inline void look_through_mirrors(Tracer& tracer, const TraceTask& task, SampleLanes& sample) {
+    Float3 shine = {splat(1.0f), splat(1.0f), splat(1.0f)};
+    Mask mirror = tracer.mirrors(sample.surface);
+    for (int bounce = 0; bounce < task.max_depth && any(mirror); ++bounce) {
+        const Surface& s = sample.surface;
+        shine = select(mirror, shine * s.albedo, shine);
+        const Surface next = tracer.trace({ray_origin(s), mirror_direction(s)}, mirror);
+        const Int object = object_of(task, next);
+        const Float3 emission = select(next.hit, tracer.emission(next), splat3(task.background));
+        sample.object = select(mirror, through_mirror(sample.object, object), sample.object);
+        sample.mirrors -= mirror;
+        sample.distance =
+            select(mirror & next.hit, sample.distance + next.distance, sample.distance);
+        sample.emission = select(mirror, shine * emission, sample.emission);
+        sample.surface = select(mirror, next, s);
+        mirror &= tracer.mirrors(sample.surface);
+    }
+    sample.surface.albedo = sample.surface.albedo * shine;
+    // A mirror that is left reflects what no path may follow.
+    sample.surface.albedo = select(mirror, Float3{}, sample.surface.albedo);
+}
+
+inline SampleLanes first_look(Tracer& tracer, const TraceTask& task, const Surface& surface,
+                              Mask active) {
+    SampleLanes sample;
+    sample.surface = surface;
+    sample.object = object_of(task, surface);
+    sample.mirrors = Int{};
+    sample.distance = surface.distance;
+    sample.emission =
+        select(active & ~surface.hit, splat3(task.background), tracer.emission(surface));
+    if (task.has_mirrors) look_through_mirrors(tracer, task, sample);
+    return sample;
+}
+
+inline Float luminance(Float3 v) {
+    return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
+}
+
+inline Float square_of(Float3 v) {
+    const Float y = luminance(v);
+    return y * y;
+}
+
+/// On the side of the surface that a cluster stands for.
+inline Mask belongs(const SampleLanes& sample, Int object, Float3 first_normal) {
+    const Mask same = dot(sample.surface.shading_normal, first_normal) > kSameSide;
+    return (sample.object == object) & ((object < 0) | same);
+}
+
+// ---------------------------------------------------------------- sums of single samples
+
+inline float lane_of(const Float& v, int lane) {
+    return v[lane];
+}
+inline void put_lane(float (&to)[3], const Float3& v, int lane) {
+    to[0] = v.x[lane];
+    to[1] = v.y[lane];
+    to[2] = v.z[lane];
+}
+
+/// A cluster without samples, for surfaces like that of a sample.
+inline Cluster empty_cluster(const SampleLanes& sample, int lane, std::uint32_t number) {
+    Cluster cluster{};
+    cluster.object = sample.object[lane];
+    cluster.surface = cluster.object < 0 ? -1 : sample.surface.index[lane];
+    cluster.first_sample = number;
+    cluster.mirrors = sample.mirrors[lane];
+    if (cluster.object >= 0) put_lane(cluster.first_normal, sample.surface.shading_normal, lane);
+    return cluster;
+}
+
+/// Sums of the lanes in a mask.
+inline float sum_of(Float v, Mask mask) {
+    const Float kept = select(mask, v, Float{});
+    float sum = 0;
+    for (int i = 0; i < W; ++i) sum += kept[i];
+    return sum;
+}
+inline void add(float (&to)[3], const Float3& v, Mask mask) {
+    to[0] += sum_of(v.x, mask);
+    to[1] += sum_of(v.y, mask);
+    to[2] += sum_of(v.z, mask);
+}
+
+/// Adds the samples of a mask to a cluster.
+inline void add_to_cluster(const TraceTask& task, const SampleLanes& sample, Mask mask,
+                           Cluster& cluster) {
+    cluster.count += static_cast<float>(count(mask));
+    cluster.shadow_count += static_cast<float>(count(mask & sample.looked));
+    add(cluster.emission, sample.emission, mask);
+    if (cluster.object < 0) return;
+    add(cluster.position, sample.surface.position, mask);
+    add(cluster.normal, sample.surface.shading_normal, mask);
+    add(cluster.albedo, sample.surface.albedo, mask);
+    if (picks_lights(task)) {
+        add(cluster.picked, sample.picked, mask);
+        cluster.picked_square += sum_of(square_of(sample.picked), mask);
+        return;
+    }
+    for (std::uint32_t i = 0; i < task.light_count; ++i) {
+        LightSums& sums = cluster.lights[i];
+        sums.exact += sum_of(sample.lights[i].exact, mask);
+        sums.open += sum_of(sample.lights[i].open, mask);
+        sums.seen += sum_of(sample.lights[i].seen, mask);
+    }
+}
+
+// ---------------------------------------------------------------- first samples of many pixels
+
+/// Sums of the samples of W pixels, each of its first surface.
+struct PilotLanes {
+    Int object{}, surface{}, mirrors{};
+    Float3 first_normal{}, position{}, normal{}, albedo{}, emission{}, picked{};
+    Float count{}, shadow_count{}, picked_square{};
+    LightLanes lights[kMostExactLights]{};
+};
+
+inline void add(PilotLanes& sums, const TraceTask& task, const SampleLanes& sample, Mask mask) {
+    const auto add3 = [mask](Float3& to, const Float3& v) { to = to + select(mask, v, Float3{}); };
+    sums.count += select(mask, splat(1.0f), Float{});
+    sums.shadow_count += select(mask & sample.looked, splat(1.0f), Float{});
+    add3(sums.position, sample.surface.position);
+    add3(sums.normal, sample.surface.shading_normal);
+    add3(sums.albedo, sample.surface.albedo);
+    add3(sums.emission, sample.emission);
+    if (picks_lights(task)) {
+        add3(sums.picked, sample.picked);
+        sums.picked_square += select(mask, square_of(sample.picked), Float{});
+        return;
+    }
+    for (std::uint32_t i = 0; i < task.light_count; ++i) {
+        sums.lights[i].exact += select(mask, sample.lights[i].exact, Float{});
+        sums.lights[i].open += select(mask, sample.lights[i].open, Float{});
+        sums.lights[i].seen += select(mask, sample.lights[i].seen, Float{});
+    }
+}
+
+inline void store(float (&to)[3][kPilotPixels], int at, const Float3& v) {
+    store(to[0] + at, v.x);
+    store(to[1] + at, v.y);
+    store(to[2] + at, v.z);
+}
+
+inline void store(const PilotOutput& out, int at, const TraceTask& task, const PilotLanes& sums) {
+    PilotBlock& block = out.block;
+    store(block.object + at, sums.object);
+    store(block.surface + at, sums.surface);
+    store(block.mirrors + at, sums.mirrors);
+    store(block.count + at, sums.count);
+    store(block.shadow_count + at, sums.shadow_count);
+    store(block.first_normal, at, sums.first_normal);
+    store(block.position, at, sums.position);
+    store(block.normal, at, sums.normal);
+    store(block.albedo, at, sums.albedo);
+    store(block.emission, at, sums.emission);
+    PilotLight* const lights = out.lights;
+    if (picks_lights(task)) {
+        store(lights[0].exact + at, sums.picked.x);
+        store(lights[0].open + at, sums.picked.y);
+        store(lights[0].seen + at, sums.picked.z);
+        store(lights[1].exact + at, sums.picked_square);
+        return;
+    }
+    for (std::uint32_t i = 0; i < task.light_count; ++i) {
+        store(lights[i].exact + at, sums.lights[i].exact);
+        store(lights[i].open + at, sums.lights[i].open);
+        store(lights[i].seen + at, sums.lights[i].seen);
+    }
+}
+
+/// Counts one sample to another surface of its pixel than the first.
+inline void spill_lane(const TraceTask& task, const SampleLanes& sample, int lane, int pixel,
+                       std::uint32_t number, PilotSpill& spill) {
+    Mask one{};
+    one[lane] = -1;
+    int of_pixel = 0;
+    Cluster* last = nullptr;
+    for (int i = 0; i < spill.count; ++i) {
+        if (spill.pixel[i] != pixel) continue;
+        Cluster& cluster = spill.clusters[i];
+        const Float3 normal = splat3(cluster.first_normal);
+        if (any(one & belongs(sample, Int{} + cluster.object, normal))) {
+            add_to_cluster(task, sample, one, cluster);
+            return;
+        }
+        last = &cluster;
+        ++of_pixel;
+    }
+    if (of_pixel == kMostClusters - 1 || spill.count == kMostSpills) {
+        if (last != nullptr) add_to_cluster(task, sample, one, *last);
+        return;
+    }
+    spill.pixel[spill.count] = pixel;
+    spill.clusters[spill.count] = empty_cluster(sample, lane, number);
+    add_to_cluster(task, sample, one, spill.clusters[spill.count++]);
+}
+
+inline void pilot_packet(Tracer& tracer, const TraceTask& task, const PilotRange& range, int at,
+                         const PilotOutput& out) {
+    const Int lane = lane_numbers() + at;
+    const Mask active = lane < range.count;
+    const Int x = lane + range.x;
+    const Uint pixel = (Uint)(x + range.y * task.width);
+    PilotLanes sums;
+    for (int number = 0; number < range.samples; ++number) {
+        const auto sample_number = static_cast<std::uint32_t>(number);
+        const PathRandom random(task, pixel, splat(sample_number));
+        const Pair jitter = random.pair(0);
+        const Ray ray = tracer.primary_ray(jitter.u + __builtin_convertvector(x, Float),
+                                           jitter.v + static_cast<float>(range.y));
+        const Surface surface = tracer.trace(ray, active);
+        SampleLanes sample = first_look(tracer, task, surface, active);
+        look_at_lights(
+            tracer, task, random, [&](int) { return active; }, sample);
+        if (number == 0) {
+            sums.object = sample.object;
+            sums.mirrors = sample.mirrors;
+            sums.surface = select(sample.surface.hit, sample.surface.index, Int{} - 1);
+            sums.first_normal = sample.surface.shading_normal;
+            for (int i = 0; out.first_hits != nullptr && i < W && at + i < range.count; ++i)
+                record_first_hit(task, surface, i, out.first_hits[at + i]);
+        }
+        const Mask first = active & belongs(sample, sums.object, sums.first_normal);
+        add(sums, task, sample, first);
+        const Mask others = active & ~first;
+        for (int i = 0; any(others) && i < W; ++i) {
+            if (others[i] != 0) spill_lane(task, sample, i, at + i, sample_number, out.spill);
+        }
+    }
+    store(out, at, task, sums);
+}
+
+std::uint64_t trace_pilot(const TraceTask& task, const PilotRange& range, const PilotOutput& out) {
+    Tracer tracer(task);
+    out.spill.count = 0;
+    for (int at = 0; at < range.count; at += W) pilot_packet(tracer, task, range, at, out);
+    return tracer.rays();
+}
+
+// ---------------------------------------------------------------- further samples of one pixel
+
+/// Whether shadow rays may still tell something about a cluster's light from an emitter.
+inline bool is_unclear(const Cluster& cluster, int light) {
+    const LightSums& sums = cluster.lights[light];
+    return cluster.shadow_count < kClearSamples || (sums.seen > 0.0f && sums.seen < sums.open);
+}
+
+/// Puts samples into the clusters of their pixel.
+class ClusterSorter {
+  public:
+    ClusterSorter(ClusterList& list, Uint numbers) : list_(list), numbers_(numbers) {}
+
+    /// Slots of the list; -1 for lanes that are not active. New surfaces get a slot.
+    Int sort(const SampleLanes& sample, Mask active) {
+        Int slot = Int{} - 1;
+        for (int k = 0; k < list_.count; ++k) take(sample, k, active, slot);
+        for (int i = 0; i < W; ++i) {
+            if (active[i] == 0 || slot[i] >= 0) continue;
+            if (list_.count == kMostClusters) {
+                slot[i] = nearest(sample.object[i]);
+                continue;
+            }
+            list_.clusters[list_.count] = empty_cluster(sample, i, numbers_[i]);
+            take(sample, list_.count++, active, slot);
+            slot[i] = list_.count - 1;
+        }
+        return slot;
+    }
+
+  private:
+    void take(const SampleLanes& sample, int k, Mask active, Int& slot) const {
+        const Cluster& cluster = list_.clusters[k];
+        const Mask same = belongs(sample, Int{} + cluster.object, splat3(cluster.first_normal));
+        slot = select(active & (slot < 0) & same, Int{} + k, slot);
+    }
+
+    [[nodiscard]] int nearest(std::int32_t object) const {
+        for (int k = 0; k < list_.count; ++k) {
+            if (list_.clusters[k].object == object) return k;
+        }
+        return list_.count - 1;
+    }
+
+    ClusterList& list_;
+    Uint numbers_;
+};
+
+inline void sample_packet(Tracer& tracer, const TraceTask& task, const PixelSamples& range,
+                          std::uint32_t first, ClusterList& list) {
+    const Uint number = (Uint)lane_numbers() + first;
+    const Mask active = (Mask)(number >= range.begin) & (Mask)(number < range.end);
+    const auto pixel = static_cast<std::uint32_t>(range.y * task.width + range.x);
+    const PathRandom random(task, pixel, number);
+    const Pair jitter = random.pair(0);
+    const Ray ray = tracer.primary_ray(jitter.u + static_cast<float>(range.x),
+                                       jitter.v + static_cast<float>(range.y));
+    const Surface surface = range.known_surface < 0
+                                ? tracer.trace(ray, active)
+                                : tracer.revisit(ray, range.known_surface, active);
+    SampleLanes sample = first_look(tracer, task, surface, active);
+    const Int slot = ClusterSorter(list, number).sort(sample, active);
+    look_at_lights(
+        tracer, task, random,
+        [&](int light) {
+            if (range.half_shadow) return active;
+            Mask asked{};
+            for (int k = 0; k < list.count; ++k) {
+                if (is_unclear(list.clusters[k], light)) asked |= slot == k;
+            }
+            return asked;
+        },
+        sample);
+    for (int k = 0; k < list.count; ++k) {
+        const Mask mine = slot == k;
+        if (any(mine)) add_to_cluster(task, sample, mine, list.clusters[k]);
+    }
+}
+
+std::uint64_t add_samples(const TraceTask& task, const PixelSamples& range, ClusterList& list) {
+    Tracer tracer(task);
+    constexpr auto kStep = static_cast<std::uint32_t>(W);
+    for (std::uint32_t at = range.begin / kStep * kStep; at < range.end; at += kStep)
+        sample_packet(tracer, task, range, at, list);
+    return tracer.rays();
+}
+
+}  // namespace
+}  // namespace vecino

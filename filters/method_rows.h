@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Rows of the tables of methods that stand in files of their own.
+#pragma once
+
+#include <span>
+
+#include "filters/methods.h"
+#include "filters/surface_records_stages.h"
+
+namespace vecino {
+
+std::span<const MethodOption> auto_rows();
+MethodRender run_auto(const MethodRequest& request, const Progress& progress);
+std::span<const MethodOption> surface_records_rows();
+MethodRender run_surface_records(const MethodRequest& request, const Progress& progress);
+
+}  // namespace vecino

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Light between records: the fits of the four around a point, blended.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "filters/record_blocks.h"
+#include "filters/records.h"
+
+namespace vecino {
+namespace {
+
+float eighth_power(float cosine) {
+    const float c2 = cosine * cosine;
+    const float c4 = c2 * c2;
+    return cosine > 0 ? c4 * c4 : 0.0f;
+}
+
+class Blend {
+  public:
+    Blend(const RecordMap& map, const SurfacePoint& point) : map_(map), point_(point) {}
+
+    bool run(RecordValue& light) {
+        light = {};
+        if (map_.levels.empty()) return false;
+        const std::size_t level = finest_level(map_, point_.x, point_.y);
+        if (!add_four(level) && !add_around()) return false;
+        for (std::size_t c = 0; c < map_.channels; ++c)
+            light[c] = std::max(sum_[c] / weight_, 0.0f);
+        return true;
+    }
+
+  private:
+    /// The four cells around the point's pixel.
+    bool add_four(std::size_t level) {
+        const float per_cell = 1.0f / static_cast<float>(map_.levels[level].cell());
+        const float fx = (static_cast<float>(point_.x) + 0.5f) * per_cell - 0.5f;
+        const float fy = (static_cast<float>(point_.y) + 0.5f) * per_cell - 0.5f;
+        const int column = static_cast<int>(std::floor(fx)), row = static_cast<int>(std::floor(fy));
+        const float u = fx - static_cast<float>(column), v = fy - static_cast<float>(row);
+        for (int k = 0; k < 4; ++k) {
+            const float weight = (k % 2 != 0 ? u : 1.0f - u) * (k / 2 != 0 ? v : 1.0f - v);
+            add_cell(level, column + k % 2, row + k / 2, weight + 1e-4f);
+        }
+        return weight_ > 0;
+    }
+
+    /// For surfaces that the first samples missed: any record of theirs in the nine cells around.
+    bool add_around() {
+        const RecordLevel& level = map_.levels[0];
+        const int column = point_.x / level.cell(), row = point_.y / level.cell();
+        for (int k = 0; k < 9; ++k) add_cell(0, column + k % 3 - 1, row + k / 3 - 1, 1.0f);
+        return weight_ > 0;
+    }
+
+    void add_cell(std::size_t level, int column, int row, float weight) {
+        for (;; --level, column /= 2, row /= 2) {
+            const RecordLevel& cells = map_.levels[level];
+            if (column < 0 || row < 0 || !cells.is_inside(column, row)) return;
+            if (cells.is_active(column, row)) {
+                for (const Record& record : cells.at(column, row)) add_record(record, weight);
+                return;
+            }
+            if (level == 0) return;
+        }
+    }
+
+    void add_record(const Record& record, float weight) {
+        if (record.object != point_.object) return;
+        weight *= eighth_power(glm::dot(record.normal_world, point_.normal_world));
+        if (!(weight > 0)) return;
+        const glm::vec3 off = point_.position_world - record.position_world;
+        const float u = glm::dot(off, record.u_axis), v = glm::dot(off, record.v_axis);
+        for (std::size_t c = 0; c < map_.channels; ++c) {
+            const auto& f = record.fit[c];
+            sum_[c] += weight * (f[0] + u * (f[1] + u * f[3] + v * f[4]) + v * (f[2] + v * f[5]));
+        }
+        weight_ += weight;
+    }
+
+    const RecordMap& map_;
+    const SurfacePoint& point_;
+    RecordValue sum_{};
+    float weight_ = 0;
+};
+
+}  // namespace
+
+bool record_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light) {
+    return Blend(map, point).run(light);
+}
+
+}  // namespace vecino

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/records.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "core/parallel.h"
+
+namespace vecino {
+
+RecordLevel::RecordLevel(int cell, int width, RowRange rows)
+    : cell_(cell),
+      columns_((width + cell - 1) / cell),
+      rows_{rows.begin / cell, (rows.end + cell - 1) / cell} {
+    const std::size_t cells =
+        static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_.end - rows_.begin);
+    active.assign(cells, 0);
+    first.assign(cells + 1, 0);
+}
+
+namespace {
+
+constexpr std::size_t kMostRecords = 8;  ///< of one cell
+constexpr float kSameSurface = 0.7f;     ///< cosine between normals of one side of a surface
+constexpr float kLeastGrazing = 0.15f;   ///< beyond, footprints do not grow
+// Cells are halved where normals turn by more than 14 degrees away from the record's.
+constexpr float kCurved = 0.97f;
+
+glm::vec3 vector(const float (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+
+/// Where a record could be.
+struct Candidate {
+    RecordSeed seed;
+    std::int32_t object;
+    glm::vec3 normal;
+    float least_cosine = 1.0f;
+    float score;
+};
+
+using Candidates = std::vector<Candidate>;
+
+/// The best place for each surface of a cell: most of a pixel, close to the middle.
+class Placement {
+  public:
+    Placement(const PixelClusters& clusters, int cell) : clusters_(clusters), cell_(cell) {}
+
+    void place(int column, int row, Candidates& out) {
+        const std::size_t before = out.size();
+        const RowRange rows = clusters_.rows();
+        const int left = column * cell_, top = row * cell_;
+        const int right = std::min(left + cell_, clusters_.width());
+        const int bottom = std::min(top + cell_, rows.end);
+        for (int y = std::max(top, rows.begin); y < bottom; ++y) {
+            for (int x = left; x < right; ++x) consider(x, y, {left, top}, before, out);
+        }
+    }
+
+  private:
+    struct Corner {
+        int left, top;
+    };
+
+    void consider(int x, int y, Corner corner, std::size_t before, Candidates& out) const {
+        const float half = 0.5f * static_cast<float>(cell_);
+        const float dx = (static_cast<float>(x - corner.left) + 0.5f) / half - 1.0f;
+        const float dy = (static_cast<float>(y - corner.top) + 0.5f) / half - 1.0f;
+        const float off_centre = 0.25f * (dx * dx + dy * dy);
+        const ClusterList* const list = clusters_.list(x, y);
+        if (list == nullptr) {
+            const PilotBlock& block = clusters_.block(x, y);
+            const int i = x % kPilotPixels;
+            const bool reflects = block.albedo[0][i] + block.albedo[1][i] + block.albedo[2][i] > 0;
+            if (block.object[i] < 0 || !reflects) return;
+            const glm::vec3 normal(block.first_normal[0][i], block.first_normal[1][i],
+                                   block.first_normal[2][i]);
+            offer({{x, y, 0}, block.object[i], normal, 1.0f, 1.0f - off_centre}, before, out);
+            return;
+        }
+        float total = 0;
+        for (int k = 0; k < list->count; ++k) total += list->clusters[k].count;
+        for (int k = 0; k < list->count; ++k) {
+            const Cluster& c = list->clusters[k];
+            if (c.object < 0 || c.albedo[0] + c.albedo[1] + c.albedo[2] <= 0) continue;
+            offer({{x, y, c.first_sample},
+                   c.object,
+                   vector(c.first_normal),
+                   1.0f,
+                   c.count / total - off_centre},
+                  before, out);
+        }
+    }
+
+    static void offer(const Candidate& candidate, std::size_t before, Candidates& out) {
+        for (std::size_t i = before; i < out.size(); ++i) {
+            Candidate& held = out[i];
+            const float cosine = glm::dot(held.normal, candidate.normal);
+            if (held.object != candidate.object || cosine < kSameSurface) continue;
+            const float least = std::min(held.least_cosine, cosine);
+            if (candidate.score > held.score) held = candidate;
+            held.least_cosine = least;
+            return;
+        }
+        if (out.size() - before < kMostRecords) out.push_back(candidate);
+    }
+
+    const PixelClusters& clusters_;
+    int cell_;
+};
+
+/// Candidates of the active cells, row by row; fills in where each cell's records begin.
+Candidates place_records(const PixelClusters& clusters, RecordLevel& level, int threads) {
+    const RowRange rows = level.rows();
+    const auto count = static_cast<std::size_t>(rows.end - rows.begin);
+    std::vector<Candidates> by_row(count);
+    for_each_block(count, 1, threads, [&](BlockRange block) {
+        Placement placement(clusters, level.cell());
+        for (std::size_t r = block.begin; r < block.end; ++r) {
+            const int row = rows.begin + static_cast<int>(r);
+            for (int column = 0; column < level.columns(); ++column) {
+                const std::size_t before = by_row[r].size();
+                if (level.is_active(column, row)) placement.place(column, row, by_row[r]);
+                level.first[level.index(column, row) + 1] =
+                    static_cast<std::uint32_t>(by_row[r].size() - before);
+            }
+        }
+    });
+    for (std::size_t i = 1; i < level.first.size(); ++i) level.first[i] += level.first[i - 1];
+    Candidates all;
+    all.reserve(level.first.back());
+    for (const Candidates& row : by_row) all.insert(all.end(), row.begin(), row.end());
+    return all;
+}
+
+/// What a pixel is wide, per distance from the camera.
+float pixel_width(const TraceTask& task) {
+    return 2.0f * glm::length(vector(task.camera_up)) / static_cast<float>(task.height);
+}
+
+Record make_record(const TraceTask& task, const Candidate& candidate, int cell,
+                   const RecordLight& light) {
+    Record record{};
+    record.object = light.object;
+    record.position_world = vector(light.position);
+    record.normal_world = vector(light.normal);
+    record.x = static_cast<float>(candidate.seed.x) + 0.5f;
+    record.y = static_cast<float>(candidate.seed.y) + 0.5f;
+    record.footprint_world = light.distance * pixel_width(task) * static_cast<float>(cell);
+    record.grazing_cosine = std::max(light.cosine, kLeastGrazing);
+    record.nearness = light.inverse_distance;
+    record.least_cosine = candidate.least_cosine;
+    for (std::size_t c = 0; c < 3; ++c) {
+        record.light[c] = light.indirect[c];
+        record.light[c + 3] = light.background[c];
+    }
+    record.variance = vector(light.variance);
+    return record;
+}
+
+void gather_level(const RecordTracer& tracer, const Candidates& candidates, int paths,
+                  RecordLevel& level, RecordWork& work) {
+    constexpr std::size_t kRecordsPerBlock = 4;
+    level.records.resize(candidates.size());
+    std::atomic<std::uint64_t> rays = 0, dropped = 0;
+    for_each_block(candidates.size(), kRecordsPerBlock, tracer.threads, [&](BlockRange block) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
+            const RecordSeed& seed = candidates[i].seed;
+            RecordLight light;
+            rays += tracer.kernel.gather(
+                tracer.task, {seed.x, seed.y, seed.sample, static_cast<std::uint32_t>(paths)},
+                light);
+            dropped += light.dropped;
+            level.records[i] = make_record(tracer.task, candidates[i], level.cell(), light);
+        }
+    });
+    work.rays += rays;
+    work.dropped += dropped;
+    work.paths += candidates.size() * static_cast<std::uint64_t>(paths);
+}
+
+bool wants_halving(const Record& record, double tau) {
+    const float reach = record.footprint_world / record.grazing_cosine;
+    return record.least_cosine < kCurved || reach * record.nearness > static_cast<float>(tau);
+}
+
+/// The next level: of cells halved, those whose records ask for it. Empty if none does.
+RecordLevel halve(const RecordLevel& level, int width, RowRange rows, double tau) {
+    RecordLevel next(level.cell() / 2, width, rows);
+    for (int row = level.rows().begin; row < level.rows().end; ++row) {
+        for (int column = 0; column < level.columns(); ++column) {
+            const auto records = level.at(column, row);
+            if (std::ranges::none_of(records,
+                                     [tau](const Record& r) { return wants_halving(r, tau); })) {
+                continue;
+            }
+            for (int k = 0; k < 4; ++k) {
+                const int c = 2 * column + k % 2, r = 2 * row + k / 2;
+                if (next.is_inside(c, r)) next.active[next.index(c, r)] = 1;
+            }
+        }
+    }
+    return next;
+}
+
+}  // namespace
+
+RecordWork gather_records(const RecordTracer& tracer, const PixelClusters& clusters,
+                          const SurfaceRecordsPlan& plan) {
+    RecordWork work;
+    work.map.channels = tracer.task.has_background ? kRecordChannels : 3;
+    RecordLevel level(plan.cell, clusters.width(), clusters.rows());
+    std::ranges::fill(level.active, std::uint8_t{1});
+    for (int number = 0;; ++number) {
+        const Candidates candidates = place_records(clusters, level, tracer.threads);
+        gather_level(tracer, candidates,
+                     number == 0 ? plan.record_paths : plan.refined_record_paths, level, work);
+        work.map.levels.push_back(std::move(level));
+        const RecordLevel& made = work.map.levels.back();
+        if (number == plan.levels || made.cell() % 2 != 0) return work;
+        level = halve(made, clusters.width(), clusters.rows(), plan.refine_tau);
+        if (std::ranges::none_of(level.active, [](std::uint8_t a) { return a != 0; })) return work;
+    }
+}
+
+}  // namespace vecino

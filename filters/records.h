@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Records: places on surfaces where the light that comes by way of others is known well. One for
+// each surface in each cell of pixels; where light changes fast, cells are halved.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "filters/pixel_clusters.h"
+#include "filters/surface_records.h"
+
+namespace vecino {
+
+/// Indirect light in red, green, blue, then the background's in the same.
+constexpr std::size_t kRecordChannels = 6;
+using RecordValue = std::array<float, kRecordChannels>;
+
+/// 1, u, v, u^2, u v, v^2
+constexpr std::size_t kFitTerms = 6;
+
+struct Record {
+    std::int32_t object;
+    glm::vec3 position_world, normal_world;
+    float x, y;                ///< where the image shows it, pixels
+    float footprint_world;     ///< side of its cell, held against the view
+    float grazing_cosine;      ///< between view and normal, at least 0.15
+    float nearness;            ///< mean of one over the distance to what is around it
+    float least_cosine;        ///< between its normal and others of its surface in the cell
+    RecordValue light;         ///< over pi
+    glm::vec3 variance;        ///< of the mean of both, an upper bound
+    glm::vec3 u_axis, v_axis;  ///< tangents; times (position - position_world) they give u and v
+    std::array<std::array<float, kFitTerms>, kRecordChannels> fit;
+};
+
+/// Cells of one size. Those that are not active have no records.
+class RecordLevel {
+  public:
+    /// rows: of pixels, a multiple of the cell's side or up to the end of the image.
+    RecordLevel(int cell, int width, RowRange rows);
+
+    [[nodiscard]] int cell() const { return cell_; }
+    [[nodiscard]] int columns() const { return columns_; }
+    /// Of all cell rows of the image, those that there are.
+    [[nodiscard]] RowRange rows() const { return rows_; }
+    [[nodiscard]] std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row - rows_.begin) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(column);
+    }
+    [[nodiscard]] bool is_inside(int column, int row) const {
+        return column >= 0 && column < columns_ && row >= rows_.begin && row < rows_.end;
+    }
+    [[nodiscard]] std::span<const Record> at(int column, int row) const {
+        const std::size_t i = index(column, row);
+        return {records.data() + first[i], first[i + 1] - first[i]};
+    }
+    [[nodiscard]] bool is_active(int column, int row) const {
+        return active[index(column, row)] != 0;
+    }
+
+    std::vector<std::uint8_t> active;  ///< by cell
+    std::vector<std::uint32_t> first;  ///< by cell, of its records; one more at the end
+    std::vector<Record> records;
+
+  private:
+    int cell_;
+    int columns_;
+    RowRange rows_;
+};
+
+/// Records of the rows of an image, coarsest level first.
+struct RecordMap {
+    std::vector<RecordLevel> levels;
+    std::size_t channels = 3;  ///< 3 without a background, else kRecordChannels
+};
+
+struct RecordWork {
+    RecordMap map;
+    std::uint64_t rays = 0;
+    std::uint64_t paths = 0;
+    std::uint64_t dropped = 0;
+};
+
+/// Places records for all surfaces that clusters show and gathers their light.
+RecordWork gather_records(const RecordTracer& tracer, const PixelClusters& clusters,
+                          const SurfaceRecordsPlan& plan);
+
+/// Where a record is: what a sample of a pixel hits.
+struct RecordSeed {
+    int x, y;
+    std::uint32_t sample;
+};
+
+/// Fits light around each record to second order, to records of the same surface nearby.
+void fit_records(RecordMap& map, const SurfaceRecordsPlan& plan, int threads);
+
+/// Where light is asked for.
+struct SurfacePoint {
+    int x, y;  ///< pixel
+    std::int32_t object;
+    glm::vec3 position_world, normal_world;
+};
+
+/// Light over pi at a point of a surface, blended from the fits around it. False, and zeros, where
+/// no record is near.
+bool record_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light);
+
+}  // namespace vecino

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The stages of the method surface_records, for those who want to know what each takes.
+#pragma once
+
+#include "filters/surface_records.h"
+
+namespace vecino {
+
+/// Seconds by stage.
+struct StageTimes {
+    double pilot_s = 0;    ///< first samples of all pixels
+    double records_s = 0;  ///< light of records
+    double fit_s = 0;      ///< polynomials around records
+    double needs_s = 0;    ///< which pixels want more samples
+    double samples_s = 0;  ///< those samples
+    double resolve_s = 0;  ///< from clusters and records to pixels
+};
+
+/// What needy pixels and records there were.
+struct StageCounts {
+    std::uint64_t needy_pixels = 0;
+    std::uint64_t records = 0;
+    int bands = 0;
+    int band_rows = 0;
+};
+
+struct StagedRender {
+    Render render;
+    StageTimes times;
+    StageCounts counts;
+};
+
+StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings,
+                              const SurfaceRecordsPlan& plan, const Progress& progress);
+
+}  // namespace vecino
