@@ -68,15 +68,15 @@ struct MethodParameters {
 
     /// @name adaptive
     /// @{
-    int coarse_step = 8;      ///< 1 to 64, a power of 2: of the first traced pixels
-    float tolerance = 0.05f;  ///< >= 0: relative difference of light that is interpolated across
-    bool correction = true;   ///< whether pixels around a wrong interpolation are traced after all
+    int coarse_step = 4;     ///< 1 to 64, a power of 2: of the first traced pixels
+    float tolerance = 0.1f;  ///< >= 0: relative difference of light that is interpolated across
+    bool correction = true;  ///< whether pixels around a wrong interpolation are traced after all
     /// @}
 
     /// @name reuse
     /// @{
-    float radius = 2.0f;              ///< 0 to 64 footprints: how near a hit to be reused is
-    Reused reused = Reused::nearest;  ///< which of those in reach
+    float radius = 2.0f;           ///< 0 to 64 footprints: how near a hit to be reused is
+    Reused reused = Reused::mean;  ///< which of those in reach
     /// @}
 
     /// @name variation

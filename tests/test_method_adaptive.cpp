@@ -61,8 +61,8 @@ TEST_CASE("of a plain wall, adaptive traces the lattice and the border", "[metho
     const Scene scene = plain_wall();
     const MethodRequest request = request_of(scene, {65, 49}, 16);
     const MethodRender result = render_by("adaptive", request);
-    // 8 x 6 lattice pixels, the last row and column.
-    const std::size_t expected = 8 * 6 + 65 + 49 - 1;
+    // 16 x 12 pixels of the lattice, the last row and column.
+    const std::size_t expected = 16 * 12 + 65 + 49 - 1;
     CHECK(require_paths_kept(result.render.frame, request) == expected);
     CHECK(result.facts["traced_share"] == double(expected) / (65 * 49));
     CHECK(result.facts["corrected_share"] == 0.0);

@@ -25,6 +25,7 @@ TEST_CASE("a reused colour is that of a traced hit within the radius", "[methods
     const Scene scene = repository_scene("cornell_sphere");
     MethodRequest request = request_of(scene, {48, 48}, 8);
     request.settings.first_hit = FirstHit::centre;
+    request.parameters.reused = Reused::nearest;
     for (const float radius : {1.0f, 2.5f}) {
         request.parameters.radius = radius;
         const MethodRender result = render_by("reuse", request);
@@ -60,6 +61,7 @@ TEST_CASE("a larger radius traces less, and the mean is less noisy than the near
     MethodRequest request = request_of(scene, {64, 64}, 4);
     const double two = render_by("reuse", request).facts["traced_share"];
     request.parameters.radius = 4;
+    request.parameters.reused = Reused::nearest;
     const MethodRender nearest = render_by("reuse", request);
     CHECK(nearest.facts["traced_share"] < two);
     request.parameters.reused = Reused::mean;
