@@ -36,6 +36,13 @@ struct Frame {
     Grid<std::int32_t> object_id;    ///< index into the scene file's "objects"
     /// @}
 
+    /// @name Guides for denoisers
+    /// Means of what the pixel's samples hit first; a miss counts as zeros.
+    /// @{
+    Image albedo_mean;                  ///< in [0, 1]
+    Grid<glm::vec3> normal_world_mean;  ///< of shading normals: shorter than 1 where they differ
+    /// @}
+
     Grid<float> sample_count;  ///< samples that entered the pixel mean
 
     /// Width and height of every plane that is there.

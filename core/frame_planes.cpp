@@ -42,6 +42,14 @@ void store_values(const PixelValues& values, Pixel at, Frame& frame) {
     }
 }
 
+void store_means(const GuideSums& sums, int samples, Pixel at, Frame& frame) {
+    const auto mean = [&](const float(&v)[3]) {
+        return glm::vec3(v[0], v[1], v[2]) / static_cast<float>(samples);
+    };
+    set(frame.albedo_mean, at, mean(sums.albedo));
+    set(frame.normal_world_mean, at, mean(sums.normal_world));
+}
+
 void store_first_hit(const FirstHitRecord& hit, Pixel at, Frame& frame) {
     const auto vector = [](const float(&v)[3]) { return glm::vec3(v[0], v[1], v[2]); };
     set(frame.position_world, at, vector(hit.position_world));
@@ -67,6 +75,7 @@ void fill_pattern(Frame& frame) {
             hit.position_world[1] = uv.y;
             hit.normal_world[2] = 1.0f;
             store_first_hit(hit, {x, y}, frame);
+            store_means({{0, 0, 0}, {0, 0, 1}}, 1, {x, y}, frame);
         }
     }
 }

@@ -13,6 +13,9 @@ namespace vecino {
 constexpr Planes kFirstHitPlanes{Plane::albedo, Plane::position, Plane::normal, Plane::distance,
                                  Plane::id};
 
+/// Of all samples, where other planes of the first hit are of one.
+constexpr Planes kMeanPlanes{Plane::albedo_mean, Plane::normal_mean};
+
 /// The planes that are in both sets.
 Planes common(Planes a, Planes b);
 
@@ -30,6 +33,7 @@ inline Pixel pixel_at(std::size_t index, Extent size) {
 }
 
 void store_values(const PixelValues& values, Pixel at, Frame& frame);
+void store_means(const GuideSums& sums, int samples, Pixel at, Frame& frame);
 void store_first_hit(const FirstHitRecord& hit, Pixel at, Frame& frame);
 
 /// Eq. 1 of the thesis. Constant over a pixel's samples: its box-filtered value is the one at the

@@ -22,6 +22,8 @@ const PlaneInfo kPlanes[] = {
     {Plane::id,       "id",       {"Id", "", ""},                             &Frame::object_id},
     {Plane::count,    "count",    {"SampleCount", "", ""},                    &Frame::sample_count},
     {Plane::variance, "variance", {"Variance.R", "Variance.G", "Variance.B"}, &Frame::variance},
+    {Plane::albedo_mean, "albedo_mean", {"AlbedoMean.R", "AlbedoMean.G", "AlbedoMean.B"}, &Frame::albedo_mean},
+    {Plane::normal_mean, "normal_mean", {"NormalMean.X", "NormalMean.Y", "NormalMean.Z"}, &Frame::normal_world_mean},
 };
 // clang-format on
 

@@ -18,17 +18,19 @@ namespace vecino {
 
 /// The planes of a Frame, each by the name that `--planes` has for it.
 enum class Plane : unsigned {
-    radiance,  ///< Frame::radiance
-    direct,    ///< Frame::direct
-    indirect,  ///< Frame::indirect
-    emission,  ///< Frame::emission
-    albedo,    ///< Frame::albedo
-    position,  ///< Frame::position_world
-    normal,    ///< Frame::normal_world
-    distance,  ///< Frame::distance_world
-    id,        ///< Frame::object_id
-    count,     ///< Frame::sample_count
-    variance,  ///< Frame::variance
+    radiance,     ///< Frame::radiance
+    direct,       ///< Frame::direct
+    indirect,     ///< Frame::indirect
+    emission,     ///< Frame::emission
+    albedo,       ///< Frame::albedo
+    position,     ///< Frame::position_world
+    normal,       ///< Frame::normal_world
+    distance,     ///< Frame::distance_world
+    id,           ///< Frame::object_id
+    count,        ///< Frame::sample_count
+    variance,     ///< Frame::variance
+    albedo_mean,  ///< Frame::albedo_mean
+    normal_mean,  ///< Frame::normal_world_mean
 };
 
 /// A set of planes.
@@ -46,7 +48,8 @@ class Planes {
     constexpr void add(Plane plane) { bits_ |= bit(plane); }
     /// Adds all of a set.
     constexpr void add(Planes planes) { bits_ |= planes.bits_; }
-    /// Every plane that there is.
+    /// Every plane but the means of the first hits, which only denoisers read: those are made
+    /// where they are named.
     static constexpr Planes all() {
         Planes planes;
         for (unsigned i = 0; i <= static_cast<unsigned>(Plane::variance); ++i)
@@ -79,7 +82,8 @@ struct PlaneInfo {
 /// All planes, in file order.
 std::span<const PlaneInfo> all_planes();
 
-/// "all" or a comma-separated list of names. Throws Error(usage) naming the allowed ones.
+/// "all", that is Planes::all(), or a comma-separated list of names. Throws Error(usage) naming the
+/// allowed ones.
 Planes parse_planes(const std::string& list);
 
 /// The planes that a frame holds.

@@ -58,9 +58,15 @@ class ProgressReport {
     std::mutex mutex_;
 };
 
+/// What is kept of a pixel's primary rays.
+struct PixelHits {
+    FirstHitRecord first;
+    GuideSums sums;
+};
+
 /// What is done with a traced pixel. Returns false if its mean is not finite.
 using StorePixel =
-    std::function<bool(std::size_t index, const PixelAccumulator&, const FirstHitRecord&)>;
+    std::function<bool(std::size_t index, const PixelAccumulator&, const PixelHits&)>;
 
 /// Traces an interval of the samples of every pixel.
 class SampleTracer {
@@ -71,7 +77,8 @@ class SampleTracer {
           settings_(settings),
           samples_(samples),
           centres_(settings.first_hit == FirstHit::centre && samples.begin == 0 &&
-                   common(settings.planes, kFirstHitPlanes) != Planes{}) {}
+                   common(settings.planes, kFirstHitPlanes) != Planes{}),
+          means_(common(settings.planes, kMeanPlanes) != Planes{}) {}
 
     void run(const StorePixel& store, RenderStatistics& statistics,
              const Progress& progress) const {
@@ -85,9 +92,9 @@ class SampleTracer {
             PixelAccumulator pixel(variance_of(settings_));
             for (std::size_t i = block.begin; i < block.end; ++i) {
                 pixel.clear();
-                const FirstHitRecord first = trace_pixel(i, pixel, counts);
+                const PixelHits hits = trace_pixel(i, pixel, counts);
                 counts.dropped += pixel.dropped();
-                if (!store(i, pixel, first)) ++counts.non_finite;
+                if (!store(i, pixel, hits)) ++counts.non_finite;
             }
             rays += counts.rays;
             dropped += counts.dropped;
@@ -107,20 +114,21 @@ class SampleTracer {
         std::uint64_t non_finite = 0;
     };
 
-    FirstHitRecord trace_pixel(std::size_t index, PixelAccumulator& pixel, Counts& counts) const {
+    PixelHits trace_pixel(std::size_t index, PixelAccumulator& pixel, Counts& counts) const {
         const auto [x, y] = pixel_at(index, {task_.width, task_.height});
-        FirstHitRecord first{};
+        PixelHits hits{};
         SampleBlock block;
         for (int sample = samples_.begin; sample < samples_.end;) {
             const int count = std::min(kBlockSamples, samples_.end - sample);
             const SampleRange range{x, y, static_cast<std::uint32_t>(sample), count};
-            counts.rays +=
-                kernel_.trace_samples(task_, range, block, sample == 0 ? &first : nullptr);
+            const PrimaryHits kept{sample == 0 ? &hits.first : nullptr,
+                                   means_ ? &hits.sums : nullptr};
+            counts.rays += kernel_.trace_samples(task_, range, block, kept);
             pixel.add(block, count);
             sample += count;
         }
-        if (centres_) counts.rays += kernel_.trace_centres(task_, {x, y, 0, 1}, &first);
-        return first;
+        if (centres_) counts.rays += kernel_.trace_centres(task_, {x, y, 0, 1}, &hits.first);
+        return hits;
     }
 
     const TraceTask& task_;
@@ -128,6 +136,7 @@ class SampleTracer {
     const RenderSettings& settings_;
     SampleInterval samples_;
     bool centres_;
+    bool means_;
 };
 
 struct Job {
@@ -186,11 +195,12 @@ Render render(const Scene& scene, const RenderSettings& settings, const Progress
     }
     const VarianceOf variance = variance_of(settings);
     const auto store = [&](std::size_t index, const PixelAccumulator& pixel,
-                           const FirstHitRecord& first) {
+                           const PixelHits& hits) {
         const Pixel at = pixel_at(index, size);
         std::array<ExactSum::Digits, kMostSums> sums;
         pixel.sums(sums);
-        store_first_hit(first, at, result.frame);
+        store_first_hit(hits.first, at, result.frame);
+        store_means(hits.sums, settings.spp, at, result.frame);
         const PixelValues values = pixel_values(sums, variance);
         store_values(values, at, result.frame);
         return is_finite(values.radiance());
@@ -208,6 +218,11 @@ PartRender render_part(const Scene& scene, const RenderSettings& settings, Sampl
         throw Error(ExitCode::usage, "samples: found the scene " + scene.name +
                                          ", which is a pattern, allowed: a scene of objects");
     }
+    if (common(settings.planes, kMeanPlanes) != Planes{}) {
+        throw Error(ExitCode::usage,
+                    "planes: found albedo_mean or normal_mean with a part of the samples, allowed: "
+                    "with all of them");
+    }
     const Extent size = reduced(settings.size, settings.reduction);
     const Planes planes = planes_to_make(settings);
     const VarianceOf variance = variance_of(settings);
@@ -215,11 +230,11 @@ PartRender render_part(const Scene& scene, const RenderSettings& settings, Sampl
     Part& part = result.part;
     if (samples.begin == 0) part.first_hits = make_frame(size, common(planes, kFirstHitPlanes));
     const auto store = [&](std::size_t index, const PixelAccumulator& pixel,
-                           const FirstHitRecord& first) {
+                           const PixelHits& hits) {
         std::array<ExactSum::Digits, kMostSums> sums;
         pixel.sums(sums);
         part.sums.store(index, sums);
-        store_first_hit(first, pixel_at(index, size), part.first_hits);
+        store_first_hit(hits.first, pixel_at(index, size), part.first_hits);
         return true;  // of the whole mean, nothing is known yet
     };
     result.statistics = trace({scene, settings, samples}, store, progress);

@@ -109,7 +109,8 @@ std::vector<int> simd_widths();
 /// from four independent scramblings, which changes the radiance too and makes it about 2 dB
 /// noisier. No other plane changes another. Throws Error(usage) naming a setting that is out of
 /// range, Error(file) if the machine lacks the memory: per traced pixel 12 bytes for each
-/// three-channel and 4 for each one-channel plane asked for (108 for all), nothing per sample.
+/// three-channel and 4 for each one-channel plane asked for (108 for Planes::all()), nothing per
+/// sample.
 Render render(const Scene& scene, const RenderSettings& settings, const Progress& progress = {});
 
 }  // namespace vecino

@@ -63,7 +63,7 @@ std::uint64_t TraceBench::trace(const TraceTask& task) const {
         for (std::uint32_t sample = 0; sample < static_cast<std::uint32_t>(spp_);
              sample += kBlockSamples) {
             const int count = std::min(kBlockSamples, spp_ - static_cast<int>(sample));
-            rays += kernel_.trace_samples(task, {at.x, at.y, sample, count}, block, nullptr);
+            rays += kernel_.trace_samples(task, {at.x, at.y, sample, count}, block, {});
             pixel.add(block, count);
         }
     }

@@ -282,8 +282,25 @@ Int lane_numbers() {
     return lanes;
 }
 
+/// The sum of the lanes in a mask, in their order.
+float sum(Float values, Mask lanes) {
+    float total = 0.0f;
+    for (int i = 0; i < W; ++i) total += lanes[i] != 0 ? values[i] : 0.0f;
+    return total;
+}
+
+void add(GuideSums& sums, const Surface& s) {
+    const auto add_vector = [&](float(&to)[3], const Float3& from) {
+        to[0] += sum(from.x, s.hit);
+        to[1] += sum(from.y, s.hit);
+        to[2] += sum(from.z, s.hit);
+    };
+    add_vector(sums.albedo, s.albedo);
+    add_vector(sums.normal_world, s.shading_normal);
+}
+
 std::uint64_t trace_samples(const TraceTask& task, const SampleRange& range, SampleBlock& block,
-                            FirstHitRecord* first_hit) {
+                            const PrimaryHits& kept) {
     __builtin_memset(&block, 0, sizeof block);
     Tracer tracer(task);
     const auto pixel =
@@ -297,7 +314,8 @@ std::uint64_t trace_samples(const TraceTask& task, const SampleRange& range, Sam
         const Ray primary = tracer.primary_ray(jitter.u + static_cast<float>(range.x),
                                                jitter.v + static_cast<float>(range.y));
         const Surface surface = tracer.trace(primary, active);
-        if (at == 0 && first_hit != nullptr) record_first_hit(task, surface, 0, *first_hit);
+        if (at == 0 && kept.first != nullptr) record_first_hit(task, surface, 0, *kept.first);
+        if (kept.sums != nullptr) add(*kept.sums, surface);
         PathPacket(task, random).run(tracer, surface, active, block, at);
     }
     return tracer.rays();

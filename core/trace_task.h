@@ -156,13 +156,24 @@ struct SampleRange {
     std::int32_t count;
 };
 
+/// Sums over samples of what their primary rays hit; a miss adds zeros.
+struct GuideSums {
+    float albedo[3];
+    float normal_world[3];  ///< shading normals, facing the camera
+};
+
+/// What is kept of the primary rays of a range of samples; null: nothing.
+struct PrimaryHits {
+    FirstHitRecord* first;  ///< of the range's first sample
+    GuideSums* sums;        ///< which it is added to
+};
+
 /// A tracer for one packet width.
 struct TraceKernel {
     int width;
-    /// Fills block; writes the hit of the range's first sample to first_hit unless that is null.
-    /// Returns rays traced.
+    /// Fills block, and what is kept of primary rays. Returns rays traced.
     std::uint64_t (*trace_samples)(const TraceTask&, const SampleRange&, SampleBlock&,
-                                   FirstHitRecord* first_hit);
+                                   const PrimaryHits&);
     /// The first hits of rays through the centres of pixels (x .. x + count - 1, y); count <=
     /// kBlockSamples.
     std::uint64_t (*trace_centres)(const TraceTask&, const SampleRange&, FirstHitRecord*);

@@ -21,6 +21,7 @@ int run_program(int argc, const char* const* argv);
 
 void add_render_command(CLI::App& app, Action& chosen);
 void add_upsample_command(CLI::App& app, Action& chosen);
+void add_resize_command(CLI::App& app, Action& chosen);
 void add_merge_command(CLI::App& app, Action& chosen);
 void add_compare_command(CLI::App& app, Action& chosen);
 void add_check_command(CLI::App& app, Action& chosen);

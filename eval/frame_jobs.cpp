@@ -67,11 +67,7 @@ std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan) {
 
 Planes planes_read_by(const Cell& cell) {
     Planes planes{Plane::radiance};
-    if (cell.kind == CellKind::image) {
-        for (const PlaneInfo& info : all_planes()) {
-            if (info.plane != Plane::variance) planes.add(info.plane);  // which would cost samples
-        }
-    }
+    if (cell.kind == CellKind::image) planes.add(cell.image->planes);
     if (cell.scheme == nullptr) return planes;
     planes.add(cell.scheme->needs);
     if (cell.scheme->needs.has(Plane::position)) planes.add(Plane::id);  // tells misses apart

@@ -43,6 +43,26 @@ void read_command(ImageSource& source, const JsonValue& json) {
     if (source.command.empty()) json.fail("a program and its arguments, one string each");
 }
 
+const PlaneInfo& plane_of(const JsonValue& json) {
+    std::vector<std::string_view> names;
+    for (const PlaneInfo& info : all_planes()) {
+        if (info.name == json.string()) return info;
+        names.push_back(info.name);
+    }
+    json.fail(join(names));
+}
+
+void read_planes(ImageSource& source, const JsonValue& json) {
+    source.planes = {Plane::radiance};
+    for (const JsonValue& name : json.elements()) source.planes.add(plane_of(name).plane);
+}
+
+nlohmann::json planes_schema() {
+    nlohmann::json names;
+    for (const PlaneInfo& info : all_planes()) names["enum"].push_back(info.name);
+    return array_schema(names, {1, 0});
+}
+
 void read_output(ImageSource& source, const JsonValue& json) {
     source.output = json.string();
     if (std::ranges::find(kOutputs, source.output) == std::end(kOutputs)) json.fail(join(kOutputs));
@@ -51,8 +71,9 @@ void read_output(ImageSource& source, const JsonValue& json) {
 // clang-format off
 constexpr JsonKey<ImageSource> kKeys[] = {
     member_key<kText, &ImageSource::file>("file", Presence::optional, "a file, from the folder of the matrix; {scene}, {seed}, {spp}, ... are replaced"),
-    {"command", Presence::optional, "a program and its arguments, run in the folder of the matrix; {output} is the file to write", read_command, command_schema},
+    {"command", Presence::optional, "a program and its arguments, run in the folder of the matrix; {output} is the file to write, {vecino} this program", read_command, command_schema},
     {"output", Presence::optional, "what kind of file the command writes", read_output, output_schema},
+    {"planes", Presence::optional, "of the frame {input}, beside radiance; default: all but variance and means", read_planes, planes_schema},
     {"channels", Presence::optional, "the file's channels of red, green and blue", read_channels, channels_schema},
     {"time_s", Presence::optional, "seconds that the image took", [](ImageSource& s, const JsonValue& json) { s.time_s = json.number({0, 1e12}); }, seconds_schema},
     member_key<kText, &ImageSource::time_attribute>("time_attribute", Presence::optional, "the file's attribute that tells these: seconds, or [HH:]MM:SS"),
@@ -63,7 +84,7 @@ std::vector<std::string> known_placeholders(bool is_command) {
     std::vector<std::string> names{"scene", "scene_file", "width", "height"};
     for (const RenderOption& row : render_options())
         if (row.name != "size") names.emplace_back(row.name);
-    if (is_command) names.insert(names.end(), {"input", "output"});
+    if (is_command) names.insert(names.end(), {"input", "output", "vecino"});
     return names;
 }
 
@@ -114,6 +135,8 @@ void check(const ImageSource& source, const JsonValue& json) {
         json.fail(is_command ? "both \"file\" and \"command\"" : "neither \"file\" nor \"command\"",
                   "one of them");
     if (!is_command && json.has("output")) json.fail("\"output\" of a file", "it with a command");
+    if (json.has("planes") && !source.reads_frame())
+        json.at("planes").fail("planes, and no {input}", "them with a command that reads a frame");
     if (source.time_s && !source.time_attribute.empty())
         json.fail("both \"time_s\" and \"time_attribute\"", "one of them at most");
     for (const std::string& text : templates_of(source)) check_template(text, json, is_command);
@@ -145,6 +168,15 @@ double attribute_seconds(const std::string& path, const std::string& name) {
 }
 
 }  // namespace
+
+Planes input_planes() {
+    Planes planes;
+    for (const PlaneInfo& info : all_planes()) {
+        const bool is_wanted = Planes::all().has(info.plane) && info.plane != Plane::variance;
+        if (is_wanted) planes.add(info.plane);
+    }
+    return planes;
+}
 
 bool ImageSource::reads(std::string_view placeholder) const {
     bool found = false;
@@ -185,7 +217,8 @@ Placeholders placeholders_of(const std::string& scene_file, const RenderSettings
     Placeholders values{{"scene", std::filesystem::path(scene_file).stem().string()},
                         {"scene_file", std::filesystem::absolute(scene_file).string()},
                         {"width", std::to_string(settings.size.width)},
-                        {"height", std::to_string(settings.size.height)}};
+                        {"height", std::to_string(settings.size.height)},
+                        {"vecino", std::filesystem::read_symlink("/proc/self/exe").string()}};
     for (const RenderOption& row : render_options()) {
         const nlohmann::json value = row.get(settings);
         if (row.name != "size")

@@ -17,6 +17,10 @@
 
 namespace vecino {
 
+/// Planes of a frame that a command reads, where it does not say: all but the variance, which would
+/// cost samples, and means of first hits.
+Planes input_planes();
+
 /// What {NAME} in a template stands for.
 using Placeholders = std::map<std::string, std::string>;
 
@@ -26,6 +30,7 @@ struct ImageSource {
     std::vector<std::string> command;  ///< templates: a program and its arguments
     std::string output = ".exr";       ///< extension of the file that the command writes
     std::optional<std::array<std::string, 3>> channels;  ///< of the file; none: R, G, B or Y
+    Planes planes = input_planes();                      ///< of the frame that the command reads
     std::optional<double> time_s;                        ///< that the image took, where known
     std::string time_attribute;  ///< of the file, that tells it: seconds, or [HH:]MM:SS
     nlohmann::json json;         ///< as it stands in the matrix
@@ -44,7 +49,7 @@ ImageSource read_reference_source(const JsonValue& json);
 
 nlohmann::json image_source_schema();
 
-/// What stands for the scene's name and file, the sides of the image and the options of a render.
+/// What stands for this program, the scene's name and file, the sides of the image and the options of a render.
 Placeholders placeholders_of(const std::string& scene_file, const RenderSettings& settings);
 
 /// A template with every {NAME} replaced. {{ and }} are braces. Precondition: read_image_source has

@@ -58,6 +58,7 @@ int run_program(int argc, const char* const* argv) {
     Action chosen;
     add_render_command(app, chosen);
     add_upsample_command(app, chosen);
+    add_resize_command(app, chosen);
     add_merge_command(app, chosen);
     add_compare_command(app, chosen);
     add_run_command(app, chosen);

@@ -203,7 +203,10 @@ void add_render_command(CLI::App& app, Action& chosen) {
     for (const MethodOption& row : method_options()) {
         add_table_option(*command, row, arguments->method_options[std::string(row.name)]);
     }
-    command->add_option("--planes", arguments->planes, "all, or a list such as radiance,normal,id")
+    command
+        ->add_option(
+            "--planes", arguments->planes,
+            "all, or a list such as radiance,normal,id; all leaves out albedo_mean and normal_mean")
         ->check(not_empty());
     command
         ->add_option("--samples", arguments->samples,

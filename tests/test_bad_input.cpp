@@ -48,7 +48,7 @@ TEST_CASE("mistakes in what to do", "[bad_input]") {
     write_documents(dir);
     const Mistake mistakes[] = {
         {"no command", "", 64, "A subcommand is required"},
-        {"an unknown command", "paint", 64, "found \"paint\", allowed: render, upsample, merge, compare, run, report, check, accept, list, schema"},
+        {"an unknown command", "paint", 64, "found \"paint\", allowed: render, upsample, resize, merge, compare, run, report, check, accept, list, schema"},
         {"an unknown flag", "--loud", 64, "command line: "},
         {"a command in two lines", "\"paint\nit\"", 64, "found \"paint it\""},
         {"nothing to list", "list", 64, "WHAT is required"},

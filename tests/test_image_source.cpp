@@ -245,6 +245,37 @@ TEST_CASE("a command rebuilds a frame that vecino traces", "[image_source]") {
     }
 }
 
+TEST_CASE("this program is at hand for commands", "[image_source]") {
+    const Placeholders values = placeholders_of("box.json", {});
+    CHECK(std::filesystem::equivalent(values.at("vecino"), "/proc/self/exe"));
+}
+
+TEST_CASE("resizing by colour alone says what it took", "[image_source]") {
+    CommandRun run;
+    run.command({VECINO_PROGRAM, "resize", "{input}", "-o", "{output}", "--size",
+                 "{width}x{height}", "--filter", "nearest", "--repeat", "3"});
+    run.json["images"]["made"]["time_attribute"] = "seconds";
+    run.json["include"] = {{{"scheme", "nearest"}}};
+    CHECK(run.run().failed == 0);
+    const auto rows = run.rows();
+    const Json made = rows.at("box.made.s1");
+    CHECK(made["metrics"] == rows.at("box.nearest.f2.s1")["metrics"]);
+    CHECK(made["time_s"]["reconstruct"].get<double>() > 0);
+}
+
+TEST_CASE("a command gets the planes that it asks for", "[image_source]") {
+    CommandRun run;
+    run.command({"cp", "{input}", "{output}"});
+    run.json["images"]["made"]["planes"] = {"albedo_mean"};
+    run.json["images"]["made"]["channels"] = {"AlbedoMean.R", "AlbedoMean.G", "AlbedoMean.B"};
+    run.run();
+    const std::string reason = run.row()["reason"].get<std::string>();
+    CHECK_THAT(reason, Catch::Matchers::Contains("8x6"));  // read, and of the frame's size
+    run.json["images"]["made"]["channels"] = {"N.X", "N.Y", "N.Z"};
+    run.run();
+    CHECK_THAT(run.row()["reason"].get<std::string>(), Catch::Matchers::Contains("N.X"));
+}
+
 TEST_CASE("images stand beside schemes, held against the same reference", "[image_source]") {
     CommandRun run;
     run.json["axes"].erase("image");
@@ -314,6 +345,14 @@ TEST_CASE("faults of images are told before anything runs", "[image_source]") {
     SECTION("two times") {
         first["time_attribute"] = "seconds";
         matrix.expect_fault("found both \"time_s\" and \"time_attribute\"");
+    }
+    SECTION("an unknown plane") {
+        first = {{"command", {"cp", "{input}", "{output}"}}, {"planes", {"normals"}}};
+        matrix.expect_fault("/images/first/planes/0: found \"normals\", allowed: radiance, direct");
+    }
+    SECTION("planes of no frame") {
+        first["planes"] = {"normal"};
+        matrix.expect_fault("/images/first/planes: found planes, and no {input}");
     }
     SECTION("an output of no known kind") {
         first = {{"command", {"cp", "{output}"}}, {"output", ".jpg"}};

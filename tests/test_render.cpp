@@ -94,6 +94,32 @@ TEST_CASE("a render has the same bits with 1, 2 and 7 threads", "[render]") {
     CHECK(equal_bits(one, render(scene, settings).frame));
 }
 
+TEST_CASE("means of first hits are those of the pixel's samples", "[render]") {
+    const Scene scene = repository_scene("cornell_sphere");
+    RenderSettings settings = small_settings({16, 16}, 1);
+    settings.planes = {Plane::albedo, Plane::normal, Plane::id, Plane::albedo_mean,
+                       Plane::normal_mean};
+    const Frame one = render(scene, settings).frame;
+    CHECK(one.albedo_mean == one.albedo);
+    CHECK(one.normal_world_mean == one.normal_world);
+    settings.spp = 200;
+    settings.threads = 2;
+    const Frame many = render(scene, settings).frame;
+    // Inside the back wall every sample hits the same; on the sphere's edge they differ.
+    CHECK(length(many.normal_world_mean(8, 4) - glm::vec3(0, 0, 1)) < 1e-6f);
+    CHECK(length(many.albedo_mean(8, 4) - many.albedo(8, 4)) < 1e-6f);
+    std::size_t mixed = 0;
+    for (const glm::vec3& normal : many.normal_world_mean.values()) {
+        CHECK(length(normal) < 1.0001f);
+        mixed += length(normal) < 0.9f ? 1 : 0;
+    }
+    CHECK(mixed > 10);
+    settings.threads = 7;
+    const Frame again = render(scene, settings).frame;
+    CHECK(again.albedo_mean == many.albedo_mean);
+    CHECK(again.normal_world_mean == many.normal_world_mean);
+}
+
 TEST_CASE("radiance has the same bits whatever other planes are asked for", "[render]") {
     const Scene scene = repository_scene("cornell");
     RenderSettings settings = small_settings({16, 16}, 100);
