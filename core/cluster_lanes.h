@@ -322,7 +322,6 @@ inline void spill_lane(const TraceTask& task, const SampleLanes& sample, int lan
     Mask one{};
     one[lane] = -1;
     int of_pixel = 0;
-    Cluster* last = nullptr;
     for (int i = 0; i < spill.count; ++i) {
         if (spill.pixel[i] != pixel) continue;
         Cluster& cluster = spill.clusters[i];
@@ -331,11 +330,10 @@ inline void spill_lane(const TraceTask& task, const SampleLanes& sample, int lan
             add_to_cluster(task, sample, one, cluster);
             return;
         }
-        last = &cluster;
         ++of_pixel;
     }
     if (of_pixel == kMostClusters - 1 || spill.count == kMostSpills) {
-        if (last != nullptr) add_to_cluster(task, sample, one, *last);
+        spill.crowded[pixel] = true;
         return;
     }
     spill.pixel[spill.count] = pixel;
@@ -381,6 +379,7 @@ inline void pilot_packet(Tracer& tracer, const TraceTask& task, const PilotRange
 std::uint64_t trace_pilot(const TraceTask& task, const PilotRange& range, const PilotOutput& out) {
     Tracer tracer(task);
     out.spill.count = 0;
+    for (bool& crowded : out.spill.crowded) crowded = false;
     for (int at = 0; at < range.count; at += W) pilot_packet(tracer, task, range, at, out);
     return tracer.rays();
 }
@@ -398,15 +397,16 @@ class ClusterSorter {
   public:
     ClusterSorter(ClusterList& list, Uint numbers) : list_(list), numbers_(numbers) {}
 
-    /// Slots of the list; -1 for lanes that are not active. New surfaces get a slot.
+    /// Slots of the list; -1 for lanes that are not active. New surfaces get a slot, if there is
+    /// one.
     Int sort(const SampleLanes& sample, Mask active) {
         Int slot = Int{} - 1;
         for (int k = 0; k < list_.count; ++k) take(sample, k, active, slot);
         for (int i = 0; i < W; ++i) {
             if (active[i] == 0 || slot[i] >= 0) continue;
             if (list_.count == kMostClusters) {
-                slot[i] = nearest(sample.object[i]);
-                continue;
+                list_.crowded = true;
+                return slot;
             }
             list_.clusters[list_.count] = empty_cluster(sample, i, numbers_[i]);
             take(sample, list_.count++, active, slot);
@@ -420,13 +420,6 @@ class ClusterSorter {
         const Cluster& cluster = list_.clusters[k];
         const Mask same = belongs(sample, Int{} + cluster.object, splat3(cluster.first_normal));
         slot = select(active & (slot < 0) & same, Int{} + k, slot);
-    }
-
-    [[nodiscard]] int nearest(std::int32_t object) const {
-        for (int k = 0; k < list_.count; ++k) {
-            if (list_.clusters[k].object == object) return k;
-        }
-        return list_.count - 1;
     }
 
     ClusterList& list_;
@@ -467,7 +460,8 @@ inline void sample_packet(Tracer& tracer, const TraceTask& task, const PixelSamp
 std::uint64_t add_samples(const TraceTask& task, const PixelSamples& range, ClusterList& list) {
     Tracer tracer(task);
     constexpr auto kStep = static_cast<std::uint32_t>(W);
-    for (std::uint32_t at = range.begin / kStep * kStep; at < range.end; at += kStep)
+    for (std::uint32_t at = range.begin / kStep * kStep; at < range.end && !list.crowded;
+         at += kStep)
         sample_packet(tracer, task, range, at, list);
     return tracer.rays();
 }

@@ -15,7 +15,7 @@ namespace vecino {
 /// of its own; with more, each sample picks one of them.
 constexpr int kMostExactLights = 4;
 
-/// Surfaces told apart in one pixel; what is beyond is counted to one of them.
+/// Surfaces told apart in one pixel.
 constexpr int kMostClusters = 4;
 
 /// Pixels whose first samples are traced side by side, in one row of the image.
@@ -55,6 +55,7 @@ struct Cluster {
 /// What the samples of a pixel hit.
 struct ClusterList {
     std::int32_t count;
+    bool crowded;  ///< there were more surfaces than clusters: what is here is not all
     Cluster clusters[kMostClusters];
 };
 
@@ -84,6 +85,7 @@ struct PilotLight {
 /// Further surfaces of pilot pixels.
 struct PilotSpill {
     std::int32_t pixel[kMostSpills];  ///< in the block
+    bool crowded[kPilotPixels];       ///< as of a ClusterList
     Cluster clusters[kMostSpills];
     std::int32_t count;
 };

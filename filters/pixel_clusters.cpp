@@ -35,6 +35,7 @@ ClusterList PixelClusters::clusters(int x, int y) const {
     if (found != nullptr) return *found;
     ClusterList one;
     one.count = 1;
+    one.crowded = false;
     one.clusters[0] = first_cluster(x, y);
     return one;
 }
@@ -54,6 +55,7 @@ ClusterList& PixelClusters::make_list(int x, int y) {
         index = static_cast<std::int32_t>(lists.size());
         ClusterList& list = lists.emplace_back();
         list.count = 1;
+        list.crowded = false;
         list.clusters[0] = first_cluster(x, y);
     }
     return lists[static_cast<std::size_t>(index)];
@@ -133,7 +135,10 @@ std::uint64_t PixelClusters::trace_row(const RecordTracer& tracer, int y, int sa
 void PixelClusters::take_spill(const PilotSpill& spill, int x, int y) {
     for (int i = 0; i < spill.count; ++i) {
         ClusterList& list = make_list(x + spill.pixel[i], y);
-        if (list.count < kMostClusters) list.clusters[list.count++] = spill.clusters[i];
+        list.clusters[list.count++] = spill.clusters[i];
+    }
+    for (int i = 0; i < kPilotPixels; ++i) {
+        if (spill.crowded[i]) make_list(x + i, y).crowded = true;
     }
 }
 

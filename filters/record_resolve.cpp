@@ -86,12 +86,13 @@ struct PixelSums {
 
 class RowResolver {
   public:
-    RowResolver(const ResolveInputs& inputs, int y, const std::vector<Orphan>& orphans,
-                Frame& frame)
-        : inputs_(inputs), y_(y), orphans_(orphans), frame_(frame) {}
+    RowResolver(const ResolveInputs& inputs, int y, const RowExceptions& exceptions, Frame& frame)
+        : inputs_(inputs), y_(y), exceptions_(exceptions), frame_(frame) {}
 
     std::uint64_t run() {
         for (int x = 0; x < inputs_.clusters.width(); x += kLanes) resolve_block(x);
+        for (const CrowdedPixel& pixel : exceptions_.crowded)
+            store_values(pixel.values, {pixel.x, y_}, frame_);
         return non_finite_;
     }
 
@@ -178,7 +179,7 @@ class RowResolver {
                          light)) {
             return light;
         }
-        for (const Orphan& orphan : orphans_) {
+        for (const Orphan& orphan : exceptions_.orphans) {
             if (orphan.x == x && orphan.cluster == number) return orphan.light;
         }
         return light;
@@ -191,16 +192,16 @@ class RowResolver {
 
     const ResolveInputs& inputs_;
     int y_;
-    const std::vector<Orphan>& orphans_;
+    const RowExceptions& exceptions_;
     Frame& frame_;
     std::uint64_t non_finite_ = 0;
 };
 
 }  // namespace
 
-std::uint64_t resolve_row(const ResolveInputs& inputs, int y, const std::vector<Orphan>& orphans,
+std::uint64_t resolve_row(const ResolveInputs& inputs, int y, const RowExceptions& exceptions,
                           Frame& frame) {
-    return RowResolver(inputs, y, orphans, frame).run();
+    return RowResolver(inputs, y, exceptions, frame).run();
 }
 
 }  // namespace vecino

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "core/accumulate.h"
 #include "core/frame.h"
 #include "filters/pixel_clusters.h"
 #include "filters/records.h"
@@ -17,14 +18,26 @@ struct Orphan {
     RecordValue light;
 };
 
+/// A pixel of more surfaces than there are clusters: what paths made of it.
+struct CrowdedPixel {
+    int x;
+    PixelValues values;
+};
+
+/// What goes beyond clusters and records in a row, in order of x.
+struct RowExceptions {
+    std::vector<Orphan> orphans;
+    std::vector<CrowdedPixel> crowded;
+};
+
 struct ResolveInputs {
     const TraceTask& task;
     const PixelClusters& clusters;
     const RecordMap& records;  ///< of no level: there is no light but that straight from emitters
 };
 
-/// Fills in the pixels of a row; orphans: those in it. Returns pixels that are not finite.
-std::uint64_t resolve_row(const ResolveInputs& inputs, int y, const std::vector<Orphan>& orphans,
+/// Fills in the pixels of a row. Returns pixels that are not finite.
+std::uint64_t resolve_row(const ResolveInputs& inputs, int y, const RowExceptions& exceptions,
                           Frame& frame);
 
 }  // namespace vecino

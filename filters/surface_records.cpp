@@ -2,6 +2,7 @@
 #include "filters/surface_records.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>  // DEV
@@ -66,7 +67,7 @@ class Band {
           tracer_(context.tracer),
           rows_(rows),
           clusters_(context.clusters),
-          orphans_(static_cast<std::size_t>(rows.end - rows.begin)) {
+          exceptions_(static_cast<std::size_t>(rows.end - rows.begin)) {
         clusters_.begin(sampled);
     }
 
@@ -152,14 +153,19 @@ class Band {
         for_each_row(rows_, [&](int y) {
             for (const NeedyPixel& pixel : needy_[row(y)]) {
                 const auto pilot = static_cast<std::uint32_t>(context_.plan.pilot_spp);
-                if (pixel.samples <= pilot) continue;
                 ClusterList list = clusters_.clusters(pixel.x, y);
+                if (pixel.samples <= pilot && !list.crowded) continue;
                 const int before = list.count;
                 rays += tracer_.kernel.add_samples(
                     tracer_.task,
                     {pixel.x, y, pilot, pixel.samples, known_surface(pixel, list),
                      (pixel.needs & kNeedsShadow) != 0},
                     list);
+                if (list.crowded) {
+                    rays += trace_paths(pixel, y);
+                    samples += pixel.samples;
+                    continue;
+                }
                 samples += pixel.samples - pilot;
                 for (int k = before; k < list.count; ++k)
                     rays += adopt(list.clusters[k], {pixel.x, y}, k);
@@ -168,6 +174,24 @@ class Band {
         });
         statistics.rays += rays;
         statistics.samples += samples;
+    }
+
+    /// A crowded pixel by plain paths.
+    std::uint64_t trace_paths(const NeedyPixel& pixel, int y) {
+        std::uint64_t rays = 0;
+        PixelAccumulator sums(VarianceOf::nothing);
+        SampleBlock block;
+        for (std::uint32_t at = 0; at < pixel.samples; at += kBlockSamples) {
+            const int count = std::min(kBlockSamples, static_cast<int>(pixel.samples - at));
+            rays += context_.kernel.trace_samples(tracer_.task, {pixel.x, y, at, count}, block,
+                                                  nullptr);
+            sums.add(block, count);
+        }
+        std::array<ExactSum::Digits, kMostSums> digits;
+        sums.sums(digits);
+        exceptions_[row(y)].crowded.push_back(
+            {pixel.x, pixel_values(digits, VarianceOf::nothing)});
+        return rays;
     }
 
     /// The quad or sphere that fills a pixel and all around it; else -1.
@@ -202,14 +226,14 @@ class Band {
             orphan.light[c] = light.indirect[c];
             orphan.light[c + 3] = light.background[c];
         }
-        orphans_[row(at.y)].push_back(orphan);
+        exceptions_[row(at.y)].orphans.push_back(orphan);
         return rays;
     }
 
     void resolve(Frame& frame, RenderStatistics& statistics) const {
         std::atomic<std::uint64_t> non_finite = 0;
         for_each_row(rows_, [&](int y) {
-            non_finite += resolve_row({tracer_.task, clusters_, map_}, y, orphans_[row(y)], frame);
+            non_finite += resolve_row({tracer_.task, clusters_, map_}, y, exceptions_[row(y)], frame);
         });
         statistics.non_finite_pixels += non_finite;
     }
@@ -222,7 +246,7 @@ class Band {
     PixelClusters& clusters_;
     RecordMap map_;
     NeedyRows needy_;
-    std::vector<std::vector<Orphan>> orphans_;
+    std::vector<RowExceptions> exceptions_;
 };
 
 /// What a frame can hold of the planes asked for.
