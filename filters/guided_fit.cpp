@@ -256,7 +256,8 @@ void GuidedFit::blend(const Surfel& p, int u, int v, double weight, glm::dvec4& 
         const Fit& fit = fits_[index++];
         if (fit.order < 0) continue;
         const double w = weight * static_cast<double>(q.coverage * likeness<kNormalPower>(q, p));
-        if (w > 0) sum += w * glm::dvec4(fit.at(p), 1.0);
+        const glm::dvec4 weighted = w * glm::dvec4(fit.at(p), 1.0);
+        if (w > 0 && std::isfinite(glm::dot(weighted, glm::dvec4(1.0)))) sum += weighted;
     }
 }
 
