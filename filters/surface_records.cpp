@@ -183,14 +183,12 @@ class Band {
         SampleBlock block;
         for (std::uint32_t at = 0; at < pixel.samples; at += kBlockSamples) {
             const int count = std::min(kBlockSamples, static_cast<int>(pixel.samples - at));
-            rays += context_.kernel.trace_samples(tracer_.task, {pixel.x, y, at, count}, block,
-                                                  nullptr);
+            rays += context_.kernel.trace_samples(tracer_.task, {pixel.x, y, at, count}, block, {});
             sums.add(block, count);
         }
         std::array<ExactSum::Digits, kMostSums> digits;
         sums.sums(digits);
-        exceptions_[row(y)].crowded.push_back(
-            {pixel.x, pixel_values(digits, VarianceOf::nothing)});
+        exceptions_[row(y)].crowded.push_back({pixel.x, pixel_values(digits, VarianceOf::nothing)});
         return rays;
     }
 
@@ -233,7 +231,8 @@ class Band {
     void resolve(Frame& frame, RenderStatistics& statistics) const {
         std::atomic<std::uint64_t> non_finite = 0;
         for_each_row(rows_, [&](int y) {
-            non_finite += resolve_row({tracer_.task, clusters_, map_}, y, exceptions_[row(y)], frame);
+            non_finite +=
+                resolve_row({tracer_.task, clusters_, map_}, y, exceptions_[row(y)], frame);
         });
         statistics.non_finite_pixels += non_finite;
     }
