@@ -46,6 +46,11 @@ void check_plan(const SurfaceRecordsPlan& plan, const RenderSettings& settings) 
     require_between(plan.refined_record_paths, 1, 1 << 20, "refined_record_paths");
     require(plan.fit_sigma > 0, "fit_sigma", std::to_string(plan.fit_sigma), "more than 0");
     require(plan.refine_tau > 0, "refine_tau", std::to_string(plan.refine_tau), "more than 0");
+    for (const PlaneInfo& info : all_planes()) {
+        const bool is_mean = kMeanPlanes.has(info.plane);
+        require(!is_mean || !settings.planes.has(info.plane), "planes", std::string(info.name),
+                "all but the means of first hits (with the method surface_records)");
+    }
     require(settings.light_sampling == LightSampling::nee, "light_sampling", "none",
             "nee (with the method surface_records)");
 }
@@ -163,7 +168,7 @@ class Band {
                     list);
                 if (list.crowded) {
                     rays += trace_paths(pixel, y);
-                    samples += pixel.samples;
+                    samples += crowded_samples(pixel);
                     continue;
                 }
                 samples += pixel.samples - pilot;
@@ -176,13 +181,20 @@ class Band {
         statistics.samples += samples;
     }
 
+    /// What is known of a crowded pixel is not all: it needs more samples than its clusters say.
+    [[nodiscard]] std::uint32_t crowded_samples(const NeedyPixel& pixel) const {
+        constexpr std::uint32_t kMore = 8;
+        return std::max(pixel.samples, kMore * static_cast<std::uint32_t>(context_.plan.edge_spp));
+    }
+
     /// A crowded pixel by plain paths.
     std::uint64_t trace_paths(const NeedyPixel& pixel, int y) {
+        const std::uint32_t paths = crowded_samples(pixel);
         std::uint64_t rays = 0;
         PixelAccumulator sums(VarianceOf::nothing);
         SampleBlock block;
-        for (std::uint32_t at = 0; at < pixel.samples; at += kBlockSamples) {
-            const int count = std::min(kBlockSamples, static_cast<int>(pixel.samples - at));
+        for (std::uint32_t at = 0; at < paths; at += kBlockSamples) {
+            const int count = std::min(kBlockSamples, static_cast<int>(paths - at));
             rays += context_.kernel.trace_samples(tracer_.task, {pixel.x, y, at, count}, block, {});
             sums.add(block, count);
         }

@@ -165,7 +165,7 @@ TEST_CASE("a schedule gives the bits that auto gave", "[auto]") {
 
 TEST_CASE("a budget of samples gives the same bits and facts on any number of threads", "[auto]") {
     const Scene scene = load_scene(kScenes + "hard_shadows.json");
-    MethodRequest request = request_of(scene, 2048);
+    MethodRequest request = request_of(scene, 8192);
     request.settings.threads = 1;
     const MethodRender one = render(find_method("auto"), request);
     CHECK(one.facts["pilot_compares"] == true);
@@ -179,7 +179,7 @@ TEST_CASE("a budget of samples gives the same bits and facts on any number of th
 
 TEST_CASE("facts of auto say what was chosen, why, and what is expected", "[auto]") {
     const Scene scene = load_scene(kScenes + "cornell.json");
-    const MethodRender result = render(find_method("auto"), request_of(scene, 2048));
+    const MethodRender result = render(find_method("auto"), request_of(scene, 8192));
     const nlohmann::json& facts = result.facts;
     CHECK(facts["chosen"] == "surface_records");
     CHECK_FALSE(facts["reason"].get<std::string>().empty());
@@ -202,7 +202,7 @@ TEST_CASE("light that is found by chance leaves path tracing alone", "[auto]") {
 TEST_CASE("a scene without light has no error to predict", "[auto]") {
     Scene scene = load_scene(kScenes + "cornell.json");
     for (Material& material : scene.materials) material.emission = glm::vec3(0);
-    const MethodRender made = render(find_method("auto"), request_of(scene, 2048));
+    const MethodRender made = render(find_method("auto"), request_of(scene, 8192));
     CHECK(made.facts["chosen"] == "path");
     CHECK(made.facts["predicted_psnr_float_db"].is_null());
     CHECK(made.render.frame.radiance(3, 5) == glm::vec3(0));

@@ -73,15 +73,15 @@ TEST_CASE("what cannot be is one line, and no file", "[methods][cli]") {
     };
     const Fault faults[] = {
         {"-o x.exr --maps m.jpg",
-         "error: m.jpg: found extension \".jpg\", allowed for --maps: .exr, .png, .bmp\n"},
+         "vecino: m.jpg: found extension \".jpg\", allowed for --maps: .exr, .png, .bmp\n"},
         {"-o x.exr --maps m.png --samples 0:16",
-         "error: command line: --maps: found with --samples, allowed: without\n"},
+         "vecino: command line: --maps: found with --samples, allowed: without\n"},
         {"-o x.exr --method adaptive --coarse-step 6",
-         "error: command line: --coarse-step: found 6, allowed: 1, 2, 4, 8, 16, 32, 64\n"},
+         "vecino: command line: --coarse-step: found 6, allowed: 1, 2, 4, 8, 16, 32, 64\n"},
         {"-o x.exr --method adaptive --radius 2",
-         "error: command line: --radius: found with --method adaptive, allowed: with reuse\n"},
+         "vecino: command line: --radius: found with --method adaptive, allowed: with reuse\n"},
         {"-o x.exr --method interleaved --interleaving subsequence --step 5",
-         "error: spp: found 16, allowed with a subsequence for each of 25 pixels: 25 or more\n"},
+         "vecino: spp: found 16, allowed with a subsequence for each of 25 pixels: 25 or more\n"},
     };
     for (const Fault& fault : faults) {
         CAPTURE(fault.arguments);
