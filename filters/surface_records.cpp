@@ -46,6 +46,11 @@ void check_plan(const SurfaceRecordsPlan& plan, const RenderSettings& settings) 
     require_between(plan.refined_record_paths, 1, 1 << 20, "refined_record_paths");
     require(plan.fit_sigma > 0, "fit_sigma", std::to_string(plan.fit_sigma), "more than 0");
     require(plan.refine_tau > 0, "refine_tau", std::to_string(plan.refine_tau), "more than 0");
+    for (const PlaneInfo& info : all_planes()) {
+        const bool is_mean = kMeanPlanes.has(info.plane);
+        require(!is_mean || !settings.planes.has(info.plane), "planes", std::string(info.name),
+                "all but the means of first hits (with the method surface_records)");
+    }
     require(settings.light_sampling == LightSampling::nee, "light_sampling", "none",
             "nee (with the method surface_records)");
 }
@@ -184,13 +189,12 @@ class Band {
         for (std::uint32_t at = 0; at < pixel.samples; at += kBlockSamples) {
             const int count = std::min(kBlockSamples, static_cast<int>(pixel.samples - at));
             rays += context_.kernel.trace_samples(tracer_.task, {pixel.x, y, at, count}, block,
-                                                  nullptr);
+                                                  {nullptr, nullptr});
             sums.add(block, count);
         }
         std::array<ExactSum::Digits, kMostSums> digits;
         sums.sums(digits);
-        exceptions_[row(y)].crowded.push_back(
-            {pixel.x, pixel_values(digits, VarianceOf::nothing)});
+        exceptions_[row(y)].crowded.push_back({pixel.x, pixel_values(digits, VarianceOf::nothing)});
         return rays;
     }
 
@@ -233,7 +237,8 @@ class Band {
     void resolve(Frame& frame, RenderStatistics& statistics) const {
         std::atomic<std::uint64_t> non_finite = 0;
         for_each_row(rows_, [&](int y) {
-            non_finite += resolve_row({tracer_.task, clusters_, map_}, y, exceptions_[row(y)], frame);
+            non_finite +=
+                resolve_row({tracer_.task, clusters_, map_}, y, exceptions_[row(y)], frame);
         });
         statistics.non_finite_pixels += non_finite;
     }

@@ -30,10 +30,10 @@ struct SurfaceRecordsPlan {
 SurfaceRecordsPlan surface_records_plan(int spp);
 
 /// Renders by surface records. Of settings, spp plays no part: the plan stands for it. Planes:
-/// all but variance, which is left out; sample_count counts primary rays. Scenes of a pattern are
-/// rendered as render() does. Throws as render() does, and Error(usage) for a setting that is out
-/// of range or for light sampling other than nee. Memory: that of the frame, and of a band of it
-/// of about two million pixels.
+/// all but variance, which is left out, and the means of first hits, which are an error;
+/// sample_count counts primary rays. Scenes of a pattern are rendered as render() does. Throws as
+/// render() does, and Error(usage) for a setting that is out of range or for light sampling other
+/// than nee. Memory: that of the frame, and of a band of it of about two million pixels.
 Render render_surface_records(const Scene& scene, const RenderSettings& settings,
                               const SurfaceRecordsPlan& plan, const Progress& progress = {});
 

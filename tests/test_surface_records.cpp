@@ -337,6 +337,9 @@ TEST_CASE("surface records say what they cannot do", "[surface_records]") {
     const Error cell = error_of([&] { records(scene, settings, plan); });
     CHECK(cell.code() == ExitCode::usage);
     CHECK(std::string(cell.what()).find("cell: found 0, allowed: 1 to 256") != std::string::npos);
+    settings.planes = {Plane::radiance, Plane::albedo_mean};
+    CHECK(error_of([&] { records(scene, settings); }).code() == ExitCode::usage);
+    settings.planes = Planes::all();
     settings.light_sampling = LightSampling::none;
     CHECK(error_of([&] { records(scene, settings); }).code() == ExitCode::usage);
     settings.light_sampling = LightSampling::nee;
