@@ -55,4 +55,18 @@ ChannelFile load_header(const std::string& path);
 /// Throws Error(file) if it cannot be read or decoded.
 ChannelFile load_channels(const std::string& path);
 
+/// A channel of some part of a file.
+struct ChannelInfo {
+    std::string name;
+    bool is_half = false;  ///< 16 bits, of which 11 are digits
+};
+
+/// All channels, of all parts of a file. Throws as load_channels() does.
+std::vector<ChannelInfo> list_channels(const std::string& path);
+
+/// Reads the channels of these names, in this order, whichever part holds them. Throws
+/// Error(file) if the file cannot be read or decoded, Error(mismatch) if a channel is not there,
+/// holds integers, or is of another size than the first part.
+ChannelFile load_channels(const std::string& path, std::span<const std::string> names);
+
 }  // namespace vecino

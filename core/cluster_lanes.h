@@ -56,6 +56,7 @@ inline Surface select(Mask m, const Surface& a, const Surface& b) {
 }
 
 inline Int object_of(const TraceTask& task, const Surface& s) {
+    if (task.surfaces.count == 0) return Int{} - 1;  // an empty table has no column to read
     const auto* const table = reinterpret_cast<const float*>(task.surfaces.object_id);
     return select(s.hit, (Int)gather(table, s.index), Int{} - 1);
 }

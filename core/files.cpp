@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 #include <utility>
-
-#include "core/error.h"
+#include <vector>
 
 namespace vecino {
 namespace {
@@ -36,12 +38,19 @@ File open_to_read(const std::string& path) {
     return file;
 }
 
-/// Unlike any other name of this process or another. Short, so that a target of any legal length
-/// has one.
-std::string unique_name(const std::string& extension) {
-    static std::atomic<unsigned> count = 0;
-    return ".vecino." + std::to_string(::getpid()) + "." + std::to_string(count++) + ".tmp" +
-           extension;
+constexpr std::string_view kTemporary = ".vecino.";
+
+/// The process that a file's name says it is a temporary file of; 0 for any other name.
+pid_t owner_of(std::string_view name) {
+    if (!name.starts_with(kTemporary) || name.find(".tmp") == name.npos) return 0;
+    name.remove_prefix(kTemporary.size());
+    pid_t owner = 0;
+    std::from_chars(name.data(), name.data() + name.size(), owner);
+    return owner;
+}
+
+bool is_running(pid_t process) {
+    return ::kill(process, 0) == 0 || errno != ESRCH;
 }
 
 }  // namespace
@@ -51,7 +60,7 @@ void cannot_read(const std::string& path, const std::string& reason) {
 }
 
 void cannot_write(const std::string& path, const std::string& reason) {
-    throw Error(ExitCode::file, one_line(path + ": cannot be written: " + reason));
+    throw WriteError(one_line(path + ": cannot be written: " + reason));
 }
 
 std::string one_line(std::string text) {
@@ -80,10 +89,28 @@ std::string read_file(const std::string& path) {
     return bytes;
 }
 
+std::string temporary_name(const std::string& extension) {
+    static std::atomic<unsigned> count = 0;
+    return std::string(kTemporary) + std::to_string(::getpid()) + "." + std::to_string(count++) +
+           ".tmp" + extension;
+}
+
+void remove_abandoned(const std::string& folder) {
+    std::error_code ignored;
+    std::vector<fs::path> abandoned;
+    for (fs::recursive_directory_iterator entry(folder, ignored), end; entry != end;
+         entry.increment(ignored)) {
+        const pid_t owner = owner_of(entry->path().filename().string());
+        if (owner > 0 && !is_running(owner)) abandoned.push_back(entry->path());
+    }
+    for (const fs::path& path : abandoned) fs::remove(path, ignored);
+}
+
 TemporaryFile::TemporaryFile(const std::string& target) : target_(target) {
     if (is_directory(target)) cannot_write(target, "it is a directory");
     const fs::path folder = fs::path(target).parent_path();
-    const std::string path = (folder / unique_name(fs::path(target).extension().string())).string();
+    const std::string path =
+        (folder / temporary_name(fs::path(target).extension().string())).string();
     stream_ = std::fopen(path.c_str(), "w+b");
     if (stream_ == nullptr) {
         const std::string reason = std::strerror(errno);
@@ -103,8 +130,7 @@ void TemporaryFile::replace_target() {
     const bool wrote = std::ferror(stream_) == 0;  // all so far
     const bool whole = std::fclose(std::exchange(stream_, nullptr)) == 0 && wrote;
     if (!whole) {
-        cannot_write(target_,
-                     errno != 0 ? std::strerror(errno) : "a write failed, as on a full disk");
+        cannot_write(target_, errno != 0 ? std::strerror(errno) : kWriteFailed);
     }
     std::error_code error;
     fs::rename(path_, target_, error);

@@ -7,10 +7,23 @@
 #include <cstdio>
 #include <string>
 
+#include "core/error.h"
+
 namespace vecino {
+
+/// A file that cannot be written, as on a full disk: whoever reads other files in vain may go on,
+/// but not from here.
+class WriteError : public Error {
+  public:
+    explicit WriteError(const std::string& message) : Error(ExitCode::file, message) {}
+};
+
+/// The reason where the system gives none.
+constexpr const char* kWriteFailed = "a write failed, as on a full disk";
 
 /// Throws Error(file): "PATH: cannot be read: REASON", on one line.
 [[noreturn]] void cannot_read(const std::string& path, const std::string& reason);
+/// The same with WriteError.
 [[noreturn]] void cannot_write(const std::string& path, const std::string& reason);
 
 /// Line breaks and control characters become spaces.
@@ -25,6 +38,14 @@ void require_writable(const std::string& path);
 
 /// All bytes of a file. Throws Error(file).
 std::string read_file(const std::string& path);
+
+/// A file name unlike any other of this process or another. Short, so that a target of any legal
+/// length has one.
+std::string temporary_name(const std::string& extension);
+
+/// Removes, at any depth of a folder, files of such names whose process is gone: killed, it could
+/// not.
+void remove_abandoned(const std::string& folder);
 
 /// A new, empty file in the directory of a target, with the target's extension. Whatever happens
 /// before replace_target(), the target stays as it was and nothing stays behind.

@@ -59,8 +59,7 @@ void store_first_hit(const FirstHitRecord& hit, Pixel at, Frame& frame) {
     if (!frame.object_id.empty()) frame.object_id(at.x, at.y) = hit.object_id;
 }
 
-void fill_pattern(Frame& frame) {
-    const Extent size = frame.size();
+void fill_pattern(Frame& frame, Extent size) {
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
             const glm::vec3 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(size.width),

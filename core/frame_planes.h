@@ -38,6 +38,6 @@ void store_first_hit(const FirstHitRecord& hit, Pixel at, Frame& frame);
 
 /// Eq. 1 of the thesis. Constant over a pixel's samples: its box-filtered value is the one at the
 /// centre.
-void fill_pattern(Frame& frame);
+void fill_pattern(Frame& frame, Extent size);
 
 }  // namespace vecino

@@ -52,9 +52,13 @@ Source open_source(const std::string& path) {
     OIIO::attribute("tiff:multithread", 0);  // its other threads keep their errors to themselves
     ImageSpec hints;
     hints.attribute("oiio:UnassociatedAlpha", 1);  // else colours come multiplied by alpha
-    Source source{path, ImageInput::open(path, &hints), {}};
+    // By its extension: ImageInput::open() hands a broken file to all of the library's two dozen
+    // decoders in turn.
+    Source source{path, ImageInput::create(path), {}};
     if (!source.input) cannot_read(path, first_fault(OIIO::geterror()));
-    source.spec = source.input->spec(0);
+    if (!source.input->open(path, source.spec, hints)) {
+        cannot_read(path, first_fault(source.input->geterror()));
+    }
     const ImageSpec& spec = source.spec;
     if (spec.deep || spec.depth > 1) cannot_read(path, "deep and volume images are not supported");
     const std::string fault = size_fault({spec.width, spec.height});
@@ -208,6 +212,31 @@ Frame read_planes(const Source& source, std::span<const Location> locations) {
     return frame;
 }
 
+/// Files of several parts hold one layer in each. False after the last.
+bool next_part(Source& source) {
+    const int next = source.input->current_subimage() + 1;
+    if (!source.input->seek_subimage(next, 0)) {
+        (void)source.input->geterror();  // there is none: no fault
+        return false;
+    }
+    source.spec = source.input->spec();
+    return true;
+}
+
+std::vector<float> read_channel(const Source& source, int channel, Extent size) {
+    const std::string& name = source.spec.channelnames[static_cast<std::size_t>(channel)];
+    if (is_integer(source.spec, channel))
+        mismatch(source, "integers in channel " + name, "floating-point values");
+    if (size_of(source) != size)
+        mismatch(source, "channel " + name + " of " + size_text(size_of(source)),
+                 size_text(size) + ", as the others");
+    std::vector<float> values(size.area());
+    if (!source.input->read_image(source.input->current_subimage(), 0, channel, channel + 1,
+                                  TypeDesc::FLOAT, values.data()))
+        cannot_read(source.path, first_fault(source.input->geterror()));
+    return values;
+}
+
 Metadata metadata_of(const ImageSpec& spec) {
     Metadata metadata;
     for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
@@ -254,6 +283,40 @@ Image load_image(const std::string& path, const std::array<std::string, 3>& chan
 ChannelFile load_header(const std::string& path) {
     const Source source = open_source(path);
     return {size_of(source), metadata_of(source.spec), {}};
+}
+
+std::vector<ChannelInfo> list_channels(const std::string& path) {
+    Source source = open_source(path);
+    std::vector<ChannelInfo> channels;
+    do {
+        const ImageSpec& spec = source.spec;
+        for (int c = 0; c < spec.nchannels; ++c) {
+            const bool is_half = spec.channelformat(c) == TypeDesc::HALF;
+            channels.push_back({spec.channelnames[static_cast<std::size_t>(c)], is_half});
+        }
+    } while (next_part(source));
+    return channels;
+}
+
+ChannelFile load_channels(const std::string& path, std::span<const std::string> names) {
+    Source source = open_source(path);
+    ChannelFile file{size_of(source), metadata_of(source.spec), {}};
+    require_memory((names.size() + 1) * file.size.area() * sizeof(float), path);
+    std::vector<Channel> found(names.size());
+    do {
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const int channel = channel_index(source.spec, names[i]);
+            if (channel >= 0 && found[i].values.empty())
+                found[i] = {names[i], read_channel(source, channel, file.size)};
+        }
+    } while (next_part(source));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (found[i].values.empty())
+            throw Error(ExitCode::mismatch, path + ": found no channel " + names[i] +
+                                                ", allowed: one of those that are there");
+    }
+    file.channels = std::move(found);
+    return file;
 }
 
 ChannelFile load_channels(const std::string& path) {

@@ -159,9 +159,10 @@ class Builder {
             }
         }
         if (bucket < 0) return lights.size() / 2;
-        const auto middle = std::ranges::stable_partition(lights, [&](std::uint32_t light) {
-                                return bucket_of(light, bounds, axis) <= bucket;
-                            }).begin();
+        // not std::ranges: Clang up to 15 cannot read the subranges of libstdc++
+        const auto middle = std::stable_partition(lights.begin(), lights.end(), [&](auto light) {
+            return bucket_of(light, bounds, axis) <= bucket;
+        });
         return static_cast<std::size_t>(middle - lights.begin());
     }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/parallel.h"
 
+#ifdef _OPENMP
 #include <omp.h>
+#endif
 
 #include <algorithm>
 #include <atomic>
@@ -10,13 +12,17 @@
 namespace vecino {
 
 int default_thread_count() {
+#ifdef _OPENMP
     return omp_get_max_threads();
+#else
+    return 1;  // as fuzz targets are built: where blocks run one after the other
+#endif
 }
 
 void for_each_block(std::size_t count, std::size_t block_size, int threads,
                     const std::function<void(BlockRange)>& body) {
     const auto blocks = static_cast<long long>((count + block_size - 1) / block_size);
-    const int team = threads > 0 ? threads : default_thread_count();
+    [[maybe_unused]] const int team = threads > 0 ? threads : default_thread_count();
     std::exception_ptr failure;
     std::atomic<bool> failed = false;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(team)

@@ -37,6 +37,9 @@ struct PartRender {
     RenderStatistics statistics;  ///< counts are of this part alone
 };
 
+/// Those asked for, radiance, and not the variance of one sample.
+Planes planes_to_make(const RenderSettings& settings);
+
 /// How the variance plane of a render is estimated, if it has one.
 VarianceOf variance_of(const RenderSettings& settings);
 

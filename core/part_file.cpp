@@ -59,12 +59,20 @@ void add_first_hits(const Frame& frame, std::vector<ChannelSource>& channels) {
     }
 }
 
+/// Ids of first hits; other planes take any float.
+void require_ids(const Channel& channel, const std::string& path) {
+    const auto is_id = [](float x) { return x >= -0x1p31f && x < 0x1p31f && std::trunc(x) == x; };
+    if (!std::ranges::all_of(channel.values, is_id))
+        cannot_read(path, "channel " + channel.name + " does not hold 32-bit integers");
+}
+
 /// False if the channel is none of a first hit.
-bool take_first_hit(const Channel& channel, Frame& frame) {
+bool take_first_hit(const Channel& channel, const std::string& path, Frame& frame) {
     for (const PlaneInfo& info : all_planes()) {
         const auto* const found = std::ranges::find(info.channels, channel.name);
         if (found == info.channels.end() || !planes_of(frame).has(info.plane)) continue;
         const auto c = static_cast<std::size_t>(found - info.channels.begin());
+        if (info.plane == Plane::id) require_ids(channel, path);
         const auto fill = [&](auto member) {
             auto& values = (frame.*member).values();
             for (std::size_t i = 0; i < values.size(); ++i) {
@@ -78,6 +86,12 @@ bool take_first_hit(const Channel& channel, Frame& frame) {
 }
 
 // ---------------------------------------------------------------- attributes
+
+/// In quotes; a broken file may hold a megabyte of it.
+std::string shown(const std::string& text) {
+    constexpr std::size_t kMost = 200;
+    return '"' + (text.size() <= kMost ? text : text.substr(0, kMost) + "...") + '"';
+}
 
 template <class T>
 T attribute(const PartHeader& header, const std::string& name) {
@@ -96,7 +110,7 @@ SampleInterval interval_of(const PartHeader& header) {
     const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
     if (colon) std::from_chars(first.ptr + 1, end, samples.end);
     if (!interval_fault(samples, header.spp).empty() || interval_text(samples) != text) {
-        cannot_read(header.path, "attribute samples is \"" + text + "\"");
+        cannot_read(header.path, "attribute samples is " + shown(text));
     }
     return samples;
 }
@@ -110,7 +124,7 @@ Planes planes_of(const PartHeader& header) {
         }
     }
     if (names_of(planes) != text || !planes.has(Plane::radiance)) {
-        cannot_read(header.path, "attribute planes is \"" + text + "\"");
+        cannot_read(header.path, "attribute planes is " + shown(text));
     }
     return planes;
 }
@@ -205,7 +219,7 @@ Part load_part(const PartHeader& header) {
     std::size_t hit_channels = 0;
     for (Channel& channel : file.channels) {
         if (take_digit(channel, names, header.path, part.sums)) continue;
-        if (!take_first_hit(channel, part.first_hits)) {
+        if (!take_first_hit(channel, header.path, part.first_hits)) {
             cannot_read(header.path, "channel " + channel.name + " is none of a part");
         }
         ++hit_channels;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <glm/vec2.hpp>
 
 #include "core/frame.h"
 #include "core/planes.h"
@@ -74,9 +75,12 @@ struct RenderSettings {
     MultipleImportance multiple_importance = MultipleImportance::balance;  ///< of nee
     Sampler sampler = Sampler::sobol;             ///< where random numbers come from
     FirstHit first_hit = FirstHit::first_sample;  ///< which ray the first-hit planes come from
-    std::uint32_t seed = 1;                       ///< any; renders of other seeds differ in noise
-    Planes planes = Planes::all();                ///< beside radiance, which is always made
-    int threads = 0;                              ///< 1 to 1024; 0: all
+    /// Of the image plane, in pixels of size, each from -65536 to 65536: pixel (x, y) shows what is
+    /// at (x + dx, y + dy) without it. Patterns are seen by no camera.
+    glm::vec2 camera_shift{0.0f};
+    std::uint32_t seed = 1;         ///< any; renders of other seeds differ in noise
+    Planes planes = Planes::all();  ///< beside radiance, which is always made
+    int threads = 0;                ///< 1 to 1024; 0: all
     int simd_width = 0;  ///< samples traced side by side: 1, 4, 8 or 16; 0: the machine's widest
 };
 

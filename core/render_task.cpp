@@ -2,9 +2,11 @@
 #include "core/render_task.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace vecino {
 namespace {
@@ -21,6 +23,15 @@ bool is_by_area(const TraceTask& task, LightKind kind) {
     return kind != LightKind::sphere;
 }
 
+/// The ray through every uv becomes the one through uv + shift / size.
+void shift_camera(const RenderSettings& s, TraceTask& task) {
+    if (s.camera_shift == glm::vec2(0.0f)) return;
+    const float right = 2.0f * s.camera_shift.x / static_cast<float>(s.size.width);
+    const float up = -2.0f * s.camera_shift.y / static_cast<float>(s.size.height);
+    for (int c = 0; c < 3; ++c)
+        task.camera_forward[c] += right * task.camera_right[c] + up * task.camera_up[c];
+}
+
 }  // namespace
 
 void check_settings(const RenderSettings& s) {
@@ -32,6 +43,11 @@ void check_settings(const RenderSettings& s) {
     require(s.reduction >= 1, "reduction", s.reduction, "1 or more");
     require(s.spp >= 1, "spp", s.spp, "1 or more");
     require(s.max_depth >= 0 && s.max_depth <= 1000, "max_depth", s.max_depth, "0 to 1000");
+    for (const float shift : {s.camera_shift.x, s.camera_shift.y}) {
+        if (std::abs(shift) <= kMaxSide) continue;
+        throw Error(ExitCode::usage,
+                    "camera_shift: found " + std::to_string(shift) + ", allowed: -65536 to 65536");
+    }
     require(s.threads >= 0 && s.threads <= 1024, "threads", s.threads, "1 to 1024");
 }
 
@@ -46,11 +62,19 @@ const TraceKernel& kernel_for(int simd_width) {
     return *kernel;
 }
 
+RenderStatistics first_statistics(const RenderSettings& settings) {
+    RenderStatistics statistics;
+    statistics.threads = settings.threads > 0 ? settings.threads : default_thread_count();
+    statistics.simd_width = kernel_for(settings.simd_width).width;
+    return statistics;
+}
+
 TraceTask render_task(const Scene& scene, const FlatScene& flat, const RenderSettings& settings) {
     const float aspect =
         static_cast<float>(settings.size.width) / static_cast<float>(settings.size.height);
     const Extent size = reduced(settings.size, settings.reduction);
     TraceTask task = trace_task(scene, flat, aspect);
+    shift_camera(settings, task);
     task.width = size.width;
     task.height = size.height;
     task.max_depth = settings.max_depth;
@@ -62,6 +86,7 @@ TraceTask render_task(const Scene& scene, const FlatScene& flat, const RenderSet
                                std::ranges::any_of(flat.lights, [&](const LightRecord& light) {
                                    return is_by_area(task, light.kind);
                                });
+    task.shares_samples = false;
     task.sobol = settings.sampler == Sampler::sobol;
     task.streams = 1;
     task.seed = settings.seed;

@@ -18,6 +18,7 @@ std::vector<float>& SampleSums::make_plane(std::size_t sum, std::size_t digit) {
     std::call_once(plane.made, [&] {
         require_memory(size_.area() * sizeof(float), "sums of " + size_text(size_));
         plane.values.resize(size_.area());
+        plane.is_made.store(true, std::memory_order_release);
     });
     return plane.values;
 }
@@ -28,25 +29,39 @@ const std::vector<float>& SampleSums::plane(std::size_t sum, std::size_t digit) 
 
 void SampleSums::set_plane(std::size_t sum, std::size_t digit, std::vector<float> values) {
     Plane& plane = planes_[index(sum, digit)];
-    std::call_once(plane.made, [&] { plane.values = std::move(values); });
+    std::call_once(plane.made, [&] {
+        plane.values = std::move(values);
+        plane.is_made.store(true, std::memory_order_release);
+    });
 }
 
 void SampleSums::store(std::size_t pixel, std::span<const ExactSum::Digits> sums) {
     for (std::size_t sum = 0; sum < sums_per_pixel_; ++sum) {
         for (std::size_t digit = 0; digit < ExactSum::kDigits; ++digit) {
             const float value = sums[sum][digit];
-            if (value != 0.0f) make_plane(sum, digit)[pixel] = value;
+            // What another thread is just making holds a 0 for this pixel already.
+            if (value != 0.0f || is_made(sum, digit)) make_plane(sum, digit)[pixel] = value;
         }
     }
 }
 
 void SampleSums::load(std::size_t pixel, std::span<ExactSum::Digits> out) const {
     for (std::size_t sum = 0; sum < sums_per_pixel_; ++sum) {
-        for (std::size_t digit = 0; digit < ExactSum::kDigits; ++digit) {
-            const std::vector<float>& values = plane(sum, digit);
-            out[sum][digit] = values.empty() ? 0.0f : values[pixel];
-        }
+        for (std::size_t digit = 0; digit < ExactSum::kDigits; ++digit)
+            out[sum][digit] = is_made(sum, digit) ? plane(sum, digit)[pixel] : 0.0f;
     }
+}
+
+void SampleSums::add(std::size_t pixel, std::span<const ExactSum::Digits> sums) {
+    std::vector<ExactSum::Digits> totals(sums_per_pixel_);
+    load(pixel, totals);
+    for (std::size_t sum = 0; sum < sums_per_pixel_; ++sum) {
+        ExactSum total;
+        total.add(totals[sum]);
+        total.add(sums[sum]);
+        totals[sum] = total.digits();
+    }
+    store(pixel, totals);
 }
 
 void SampleSums::add(const SampleSums& other) {

@@ -4,6 +4,7 @@
 // the first digit other than 0 comes: light spans few of the digits that a sum could have.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -26,7 +27,8 @@ class SampleSums {
     [[nodiscard]] Extent size() const { return size_; }
     [[nodiscard]] std::size_t sums_per_pixel() const { return sums_per_pixel_; }
 
-    /// Gives a pixel its sums. Each pixel once; several threads may, for different pixels.
+    /// Gives a pixel its sums, in place of those that it had. Several threads may, for different
+    /// pixels.
     void store(std::size_t pixel, std::span<const ExactSum::Digits> sums);
 
     /// The sums of a pixel. Precondition: out has sums_per_pixel() entries.
@@ -40,11 +42,18 @@ class SampleSums {
     /// Gives a digit its values, once.
     void set_plane(std::size_t sum, std::size_t digit, std::vector<float> values);
 
+    /// Adds to the sums of a pixel. Several threads may, for different pixels.
+    void add(std::size_t pixel, std::span<const ExactSum::Digits> sums);
+
   private:
     struct Plane {
         std::once_flag made;
+        std::atomic<bool> is_made = false;
         std::vector<float> values;
     };
+    [[nodiscard]] bool is_made(std::size_t sum, std::size_t digit) const {
+        return planes_[index(sum, digit)].is_made.load(std::memory_order_acquire);
+    }
     [[nodiscard]] std::size_t index(std::size_t sum, std::size_t digit) const {
         return sum * ExactSum::kDigits + digit;
     }

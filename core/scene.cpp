@@ -66,8 +66,9 @@ constexpr JsonKey<Material> kMaterialKeys[] = {
      [](Material&, const JsonValue& json) { (void)json.string(); }, schema_of<kText>},
     member_key<kRadiance, &Material::emission>("emission", optional,
                                                "radiance sent out, on one side"),
-    member_key<kBoolean, &Material::mirror>("mirror", optional,
-                                            "a perfect mirror instead of a diffuse surface"),
+    member_key<kBoolean, &Material::mirror>(
+        "mirror", optional,
+        "a perfect mirror instead of a diffuse surface; first hits are its own"),
 };
 
 /// The texture of an earlier material that names the same file, or a new one.

@@ -303,9 +303,10 @@ std::uint64_t trace_samples(const TraceTask& task, const SampleRange& range, Sam
                             const PrimaryHits& kept) {
     __builtin_memset(&block, 0, sizeof block);
     Tracer tracer(task);
-    const auto pixel =
+    const auto number =
         static_cast<std::uint32_t>(range.y) * static_cast<std::uint32_t>(task.width) +
         static_cast<std::uint32_t>(range.x);
+    const std::uint32_t pixel = task.shares_samples ? 0 : number;
     for (int at = 0; at < range.count; at += W) {
         const Int lane = lane_numbers() + at;
         const Mask active = lane < range.count;
@@ -329,8 +330,14 @@ std::uint64_t trace_centres(const TraceTask& task, const SampleRange& range, Fir
         const Float x = __builtin_convertvector(lane + range.x, Float) + 0.5f;
         const Ray ray = tracer.primary_ray(x, splat(static_cast<float>(range.y) + 0.5f));
         const Surface surface = tracer.trace(ray, active);
-        for (int i = 0; i < W && at + i < range.count; ++i)
+        const Float3 emission =
+            select(surface.hit, tracer.emission(surface), splat3(task.background));
+        for (int i = 0; i < W && at + i < range.count; ++i) {
             record_first_hit(task, surface, i, out[at + i]);
+            out[at + i].emission[0] = emission.x[i];
+            out[at + i].emission[1] = emission.y[i];
+            out[at + i].emission[2] = emission.z[i];
+        }
     }
     return tracer.rays();
 }

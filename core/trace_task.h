@@ -122,6 +122,7 @@ struct TraceTask {
     /// At a path's last surface, whose bounce is traced for this alone, only near emitters.
     bool multiple_importance;
     bool sobol;
+    bool shares_samples;  ///< all pixels have the random numbers of the first one
     /// 1, or kStreams: Sobol samples are dealt to that many independent scramblings, sample i to i
     /// % streams. Their spread is the only sound estimate of the variance, at the price of about 2
     /// dB: each stratifies a quarter.
@@ -145,6 +146,7 @@ struct FirstHitRecord {
     float position_world[3];
     float normal_world[3];
     float albedo[3];
+    float emission[3];  ///< written by trace_centres alone; the background of a miss
     float distance_world;
     std::int32_t object_id;
 };

@@ -37,13 +37,21 @@ std::vector<std::string_view> names_of(std::span<const Row> rows) {
     return names;
 }
 
+template <class Row>
+bool has_row(std::span<const Row> rows, std::string_view name) {
+    return std::ranges::find(rows, name, &Row::name) != rows.end();
+}
+
 }  // namespace
 
 std::vector<std::string_view> cell_keys() {
     std::vector<std::string_view> keys{"scene", "scheme", "method", "image", "budget"};
     for (const RenderOption& row : render_options()) keys.push_back(row.name);
     for (const SchemeOption& row : scheme_options()) keys.push_back(row.name);
-    for (const MethodOption& row : method_options()) keys.push_back(row.name);
+    for (const MethodOption& row : method_options()) {
+        // Schemes and methods may share an option, which is then one key.
+        if (std::ranges::find(keys, row.name) == keys.end()) keys.push_back(row.name);
+    }
     return keys;
 }
 
@@ -70,9 +78,10 @@ void require_one_kind(const JsonValue& json) {
 }
 
 std::vector<JsonValue> listed(const std::string& key, const JsonValue& value) {
-    const bool one_size = key == "size" && value.raw().is_array() && !value.raw().empty() &&
+    const bool is_pair = key == "size" || key == "camera_shift";
+    const bool one_pair = is_pair && value.raw().is_array() && !value.raw().empty() &&
                           !value.raw().front().is_array();
-    if (one_size || !value.raw().is_array()) return {value};
+    if (one_pair || !value.raw().is_array()) return {value};
     auto values = value.elements();
     if (values.empty()) value.fail("at least one value");
     return values;
@@ -91,13 +100,11 @@ Axes read_axes(const JsonValue& json) {
 
 bool is_scheme_key(const std::string& key) {
     if (key == "scheme" || key == "budget" || key == "reduction") return true;
-    return std::ranges::any_of(scheme_options(),
-                               [&](const SchemeOption& row) { return row.name == key; });
+    return has_row(scheme_options(), key) && !has_row(method_options(), key);
 }
 
 bool is_method_key(const std::string& key) {
-    return std::ranges::any_of(method_options(),
-                               [&](const MethodOption& row) { return row.name == key; });
+    return has_row(method_options(), key) && !has_row(scheme_options(), key);
 }
 
 }  // namespace vecino

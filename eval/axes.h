@@ -29,7 +29,8 @@ void require_one_kind(const JsonValue& json);
 /// An object of cell keys, each with one value or an array of several, all of them checked.
 Axes read_axes(const JsonValue& json);
 
-/// The values of one key: an array lists several, but "size" takes [W, H] as one.
+/// The values of one key: an array lists several, but "size" and "camera_shift" take [X, Y] as
+/// one.
 std::vector<JsonValue> listed(const std::string& key, const JsonValue& value);
 
 /// Whether only schemes read this key, so that it says nothing about a method.

@@ -4,9 +4,11 @@
 #include <array>
 #include <memory>
 
+#include "core/first_hits.h"
 #include "core/timing.h"
 #include "core/trace_bench.h"
 #include "eval/round_robin.h"
+#include "filters/guide.h"
 #include "filters/schemes.h"
 
 namespace vecino {
@@ -103,8 +105,8 @@ struct NamedScheme {
 std::vector<NamedScheme> schemes_to_time() {
     std::vector<NamedScheme> named;
     for (const Scheme& scheme : all_schemes()) {
-        SchemeParameters parameters;
-        parameters.window = 7;
+        SchemeParameters parameters = scheme.defaults;
+        if (!scheme.uses_guide()) parameters.window = 7;
         if (!scheme.reads("weighting")) {
             named.push_back({std::string(scheme.name), &scheme, parameters});
             continue;
@@ -177,6 +179,9 @@ std::vector<SchemeRow> bench_schemes(const BenchScene& scene, const BenchSetting
     low.spp = 4;
     low.planes = Planes::all();
     std::array<Frame, kReductions.size()> frames;
+    RenderSettings full = low;
+    full.planes = kGuidePlanes;
+    const Frame guide = trace_first_hits(scene.scene, full).frame;
     RoundRobin robin;
     const std::vector<NamedScheme> schemes = schemes_to_time();
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -184,7 +189,7 @@ std::vector<SchemeRow> bench_schemes(const BenchScene& scene, const BenchSetting
         frames[i] = render(scene.scene, low).frame;
         for (const NamedScheme& named : schemes) {
             const auto rebuild = [&, i](int threads) {
-                reconstruct(frames[i], *named.scheme, {kSize, named.parameters, threads});
+                reconstruct(frames[i], *named.scheme, {kSize, named.parameters, threads, &guide});
             };
             robin.add([=] { return seconds_per_run([&] { rebuild(settings.threads); }); });
             robin.add([=] { return thread_seconds_per_run([&] { rebuild(1); }); });

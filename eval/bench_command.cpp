@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <map>
 #include <memory>
 
@@ -44,19 +42,10 @@ BenchSettings settings_of(const BenchArguments& arguments) {
     return settings;
 }
 
-std::string utc_now() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text;
-}
-
 nlohmann::json result_json(const BenchReport& report, const BenchSettings& settings) {
     nlohmann::json json = bench_json(report);
     json["host"] = version_json();
-    json["date"] = utc_now();
+    json["date"] = utc_time();
     json["size"] = {settings.size.width, settings.size.height};
     json["spp"] = settings.spp;
     json["repeats"] = settings.repeats;

@@ -4,10 +4,12 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/image_io.h"
 #include "core/timing.h"
 #include "eval/ceiling.h"
 #include "eval/external_command.h"
+#include "eval/frame_jobs.h"
 #include "eval/metrics_json.h"
 
 namespace vecino {
@@ -17,14 +19,24 @@ struct BuiltImage {
     Reconstruction made;
     double reconstruct_s = 0;
     double elsewhere_s = 0;  ///< tracing by another program
+    double guide_s = 0;
 };
 
-BuiltImage reconstruct_timed(const Cell& cell, const Frame& low, int repeat) {
+ReconstructionRequest request_of(const Cell& cell, GuideStore& guides) {
+    ReconstructionRequest request{cell.settings.size, cell.parameters, 0};
+    if (cell.scheme->uses_guide()) request.guide = &guides.get(cell.parameters.guide_scale).frame;
+    return request;
+}
+
+BuiltImage reconstruct_timed(const Cell& cell, const Frame& low, const CellInput& input) {
     std::vector<double> times;
     BuiltImage built;
-    for (int i = 0; i < repeat; ++i) {
+    const ReconstructionRequest request = request_of(cell, *input.guides);
+    if (cell.scheme->uses_guide())
+        built.guide_s = input.guides->get(cell.parameters.guide_scale).trace_s;
+    for (int i = 0; i < input.matrix->repeat; ++i) {
         const Stopwatch watch;
-        built.made = reconstruct(low, *cell.scheme, {cell.settings.size, cell.parameters, 0});
+        built.made = reconstruct(low, *cell.scheme, request);
         times.push_back(watch.seconds());
         if (times.back() > kRepeatBelow_s) break;
     }
@@ -32,15 +44,24 @@ BuiltImage reconstruct_timed(const Cell& cell, const Frame& low, int repeat) {
     return built;
 }
 
+void require_made(const std::filesystem::path& output, const ExternalCommand& command) {
+    if (std::filesystem::exists(output)) return;
+    throw Error(ExitCode::file, "command " + command.arguments.front() +
+                                    ": found no file at {output}, allowed: an image there (" +
+                                    command.log + ")");
+}
+
 /// Runs the source's command, on the traced frame if it reads one.
 SourcedImage run_source(const Cell& cell, const CellInput& input, const RunDirectory& directory) {
     const ImageSource& source = *cell.image;
     const std::string folder = "cells/" + cell.name;
     Placeholders values = placeholders_of(cell.scene, cell.settings);
-    const std::filesystem::path output =
-        std::filesystem::absolute(directory.file_in(folder, "made" + source.output));
-    const std::filesystem::path frame =
-        std::filesystem::absolute(directory.file_in(folder, "input.exr"));
+    const auto temporary = [&](const std::string& extension) {
+        // Of this run alone: a command that outlives a killed run goes on writing to its own.
+        return std::filesystem::absolute(directory.file_in(folder, temporary_name(extension)));
+    };
+    const std::filesystem::path output = temporary(source.output);
+    const std::filesystem::path frame = temporary(".exr");
     values["output"] = output.string();
     values["input"] = frame.string();
     if (source.reads_frame()) save_frame(input.traced->render.frame, frame.string());
@@ -51,6 +72,7 @@ SourcedImage run_source(const Cell& cell, const CellInput& input, const RunDirec
     while (times.size() < static_cast<std::size_t>(input.matrix->repeat)) {
         std::filesystem::remove(output);  // what an earlier go left is no result
         times.push_back(run_command(command));
+        require_made(output, command);
         if (times.back() > kRepeatBelow_s) break;
     }
     SourcedImage made = load_sourced_image(source, output.string());
@@ -77,8 +99,13 @@ BuiltImage build_image(const Cell& cell, const CellInput& input, const RunDirect
     switch (cell.kind) {
         case CellKind::image:
             return image_from_elsewhere(cell, input, directory);
-        case CellKind::scheme:
-            return reconstruct_timed(cell, input.traced->render.frame, input.matrix->repeat);
+        case CellKind::scheme: {
+            if (cell.inject.empty())
+                return reconstruct_timed(cell, input.traced->render.frame, input);
+            Frame low = input.traced->render.frame;
+            inject(cell.inject, low);
+            return reconstruct_timed(cell, low, input);
+        }
         case CellKind::blocky_ceiling: {
             const Extent low = reduced(cell.settings.size, cell.settings.reduction);
             return {{.image = blocky_ceiling(input.reference->image, low)}, 0};
@@ -118,12 +145,41 @@ double save(const Image& image, const Cell& cell, const RunDirectory& directory)
     return write_s;
 }
 
-nlohmann::json times_json(const RenderStatistics& s, double reconstruct_s, double write_s) {
+nlohmann::json times_json(const RenderStatistics& s, const BuiltImage& built, double write_s) {
     return {{"scene", s.scene_s},
             {"trace", s.trace_s},
-            {"reconstruct", reconstruct_s},
+            {"guide", built.guide_s},
+            {"reconstruct", built.reconstruct_s},
             {"write", write_s},
-            {"total", s.scene_s + s.trace_s + reconstruct_s + write_s}};
+            {"total", s.scene_s + s.trace_s + built.guide_s + built.reconstruct_s + write_s}};
+}
+
+/// What the cell makes of a frame of its settings.
+Image image_of(const Cell& cell, const Frame& frame, GuideStore& guides) {
+    if (cell.scheme == nullptr) return frame.radiance;
+    return reconstruct(frame, *cell.scheme, request_of(cell, guides)).image;
+}
+
+nlohmann::json measure_stability(const Cell& cell, const Image& image, const CellInput& input,
+                                 const RunDirectory& directory) {
+    nlohmann::json json = shimmer_json(
+        input.shifted, {&image, &input.reference->image}, [&](const ShiftedView& view) {
+            RenderSettings settings = cell.settings;
+            settings.camera_shift += view.shift;
+            GuideStore guides(*input.scene, settings, 1);
+            Image shifted = image_of(cell, view.frame, guides);
+            save_image(shifted,
+                       directory.file_in("cells/" + cell.name, shifted_image_file(view.shift)));
+            return shifted;
+        });
+    if (!input.matrix->stability->elasticity) return {{"shimmer", json}};
+    // A scheme takes the same frame in another way; a method has to render anew.
+    const auto make = [&](const Cell& other) {
+        return cell.kind == CellKind::method
+                   ? render_frame(other, *input.scene).render.frame.radiance
+                   : image_of(other, input.traced->render.frame, *input.guides);
+    };
+    return {{"shimmer", json}, {"elasticity", elasticity_json(cell, input.reference->image, make)}};
 }
 
 nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirectory& directory) {
@@ -137,29 +193,43 @@ nlohmann::json measure(const Cell& cell, const CellInput& input, const RunDirect
     s.trace_s += built.elsewhere_s;
     // What took no time that is known did not take that of writing alone either.
     const bool is_timed = s.trace_s + built.reconstruct_s > 0;
-    row["time_s"] = times_json(s, built.reconstruct_s, is_timed ? write_s : 0);
+    row["time_s"] = times_json(s, built, is_timed ? write_s : 0);
     row["counts"] = {{"samples", s.samples},
                      {"rays", s.rays},
                      {"dropped_samples", s.dropped_samples + built.made.dropped_samples},
                      {"fallback_pixels", built.made.fallback_pixels},
                      {"non_finite_pixels", built.made.non_finite_pixels}};
     if (input.traced != nullptr) row["threads"] = s.threads;
-    if (cell.kind == CellKind::method) row["facts"] = input.traced->facts;
-    is_finite = is_finite && built.made.non_finite_pixels == 0;
+    if (cell.kind == CellKind::method) {
+        row["facts"] = input.traced->facts;
+        // Which a method decides itself, and no parameter tells.
+        const double asked = double(cell.spp_asked) * double(cell.settings.size.area());
+        row["samples_ratio"] = static_cast<double>(s.samples) / asked;
+    }
+    // What injected samples leave is what their cell is there to show.
+    is_finite = is_finite && (built.made.non_finite_pixels == 0 || !cell.inject.empty());
     row["status"] = is_finite ? "ok" : "failed";
     if (!is_finite) row["reason"] = "non-finite pixels";
+    if (is_finite && input.matrix->stability && has_stability(cell))
+        row["stability"] = measure_stability(cell, built.made.image, input, directory);
     return row;
 }
 
 }  // namespace
 
+nlohmann::json failed_result(const std::string& reason) {
+    return {{"status", "failed"}, {"reason", reason}};
+}
+
 nlohmann::json cell_result(const Cell& cell, const CellInput& input,
                            const RunDirectory& directory) {
     try {
         return measure(cell, input, directory);
+    } catch (const WriteError&) {
+        throw;  // no fault of the cell: the run goes on from here once there is room
     } catch (const Error& error) {
         if (error.code() == ExitCode::interrupted) throw;
-        return {{"status", "failed"}, {"reason", error.what()}};
+        return failed_result(error.what());
     }
 }
 

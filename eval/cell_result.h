@@ -7,9 +7,11 @@
 #include <span>
 #include <string>
 
+#include "eval/guide_store.h"
 #include "eval/matrix.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
+#include "eval/stability.h"
 
 namespace vecino {
 
@@ -21,10 +23,17 @@ struct CellInput {
     const Matrix* matrix = nullptr;
     const MethodRender* traced = nullptr;  ///< times are medians; null where no frame is read
     const StoredReference* reference = nullptr;
+    GuideStore* guides = nullptr;  ///< null where no frame is read
+    const Scene* scene = nullptr;               ///< null where no frame is read
+    std::span<const ShiftedView> shifted = {};  ///< as the matrix asks for under "stability"
 };
 
+/// Of a cell that fails: status "failed" and a "reason".
+nlohmann::json failed_result(const std::string& reason);
+
 /// Makes the cell's image, saves it in the run directory and returns "status", "metrics", "time_s"
-/// and "counts" of its row. A cell that fails gets status "failed" and a "reason".
+/// and "counts" of its row, or that of a cell that fails. Throws WriteError where there is no room
+/// for the image, Error(interrupted).
 nlohmann::json cell_result(const Cell& cell, const CellInput& input, const RunDirectory& directory);
 
 }  // namespace vecino

@@ -41,6 +41,9 @@ std::string version_text();
 /// Libraries, machine and build, for run.json.
 nlohmann::json version_json();
 
+/// Now, as "2026-01-31T12:34:56Z".
+std::string utc_time();
+
 /// "12.3 dB" or "-" for none.
 std::string number_text(double value, int digits);
 

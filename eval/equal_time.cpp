@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "core/timing.h"
 #include "eval/frame_jobs.h"
+#include "eval/guide_store.h"
 #include "eval/run_directory.h"
 
 namespace vecino {
@@ -27,7 +28,9 @@ nlohmann::json question(const Cell& cell) {
     json.erase("spp");
     json.erase("seed");
     for (const SchemeOption& row : scheme_options()) {
-        if (row.name != "window") json.erase(std::string(row.name));
+        const bool takes_time =
+            row.name == "window" || row.name == "order" || row.name == "guide_scale";
+        if (!takes_time) json.erase(std::string(row.name));
     }
     return json;
 }
@@ -58,16 +61,25 @@ int calibrate(const Scene& scene, RenderSettings settings, int asked_spp) {
     });
 }
 
+/// With the guide that it takes.
 double reconstruct_s(const Scene& scene, const Cell& cell) {
     const Frame low = render(scene, low_settings(cell)).frame;
+    ReconstructionRequest request{cell.settings.size, cell.parameters, 0};
+    GuideStore guides(scene, cell.settings, kRounds);
+    double guide_s = 0;
+    if (cell.scheme->uses_guide()) {
+        const TracedGuide& guide = guides.get(cell.parameters.guide_scale);
+        request.guide = &guide.frame;
+        guide_s = guide.trace_s;
+    }
     std::vector<double> times;
     // A small image takes microseconds: a few repeats could all fall into one busy moment.
     for (const Stopwatch all; times.size() < kRounds || all.seconds() < kRender_s / 4;) {
         const Stopwatch watch;
-        (void)reconstruct(low, *cell.scheme, {cell.settings.size, cell.parameters, 0});
+        (void)reconstruct(low, *cell.scheme, request);
         times.push_back(watch.seconds());
     }
-    return median(times);
+    return guide_s + median(times);
 }
 
 }  // namespace

@@ -44,8 +44,12 @@ pid_t start(const ExternalCommand& command) {
         ::posix_spawn_file_actions_addchdir_np(&actions, command.folder.c_str());
     posix_spawnattr_t attributes;
     ::posix_spawnattr_init(&attributes);
-    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
     ::posix_spawnattr_setpgroup(&attributes, 0);
+    sigset_t ours;  // that the program ignores, and others need not
+    ::sigemptyset(&ours);
+    ::sigaddset(&ours, SIGXFSZ);
+    ::posix_spawnattr_setsigdefault(&attributes, &ours);
     pid_t child = 0;
     const int error =
         ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);

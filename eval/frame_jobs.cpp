@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "eval/render_options.h"
+#include "eval/stability.h"
 
 namespace vecino {
 namespace {
@@ -65,11 +67,44 @@ std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan) {
     return jobs;
 }
 
+std::vector<Cell> views_of(const FrameJob& job, const Matrix& matrix) {
+    std::vector<Cell> views{*job.cells.front()};
+    views.front().settings = job.settings;
+    if (!matrix.stability || !has_stability(views.front())) return views;
+    for (const float shift : matrix.stability->shifts) {
+        views.push_back(views.front());
+        views.back().settings.camera_shift += shift;
+    }
+    return views;
+}
+
+std::vector<PlannedRender> renders_of(const std::vector<FrameJob>& jobs, const Matrix& matrix) {
+    std::vector<PlannedRender> renders;
+    std::set<std::string> references;
+    for (const FrameJob& job : jobs) {
+        for (const Cell& view : views_of(job, matrix)) {
+            if (job.traces) renders.push_back({view.scene, view.settings});
+            if (matrix.reference_source != nullptr) continue;
+            const RenderSettings reference = reference_settings(matrix, view);
+            if (references.insert(frame_json(view.scene, reference).dump()).second)
+                renders.push_back({view.scene, reference});
+        }
+    }
+    return renders;
+}
+
+MethodRender render_frame(const Cell& cell, const Scene& scene, const Progress& progress) {
+    const Method& method =
+        cell.kind == CellKind::method ? *cell.render_method : all_methods().front();
+    return render(method, {scene, cell.settings, cell.method_parameters}, progress);
+}
+
 Planes planes_read_by(const Cell& cell) {
     Planes planes{Plane::radiance};
     if (cell.kind == CellKind::image) planes.add(cell.image->planes);
     if (cell.scheme == nullptr) return planes;
     planes.add(cell.scheme->needs);
+    planes.add(cell.scheme->may_read);
     if (cell.scheme->needs.has(Plane::position)) planes.add(Plane::id);  // tells misses apart
     return planes;
 }
@@ -77,7 +112,7 @@ Planes planes_read_by(const Cell& cell) {
 nlohmann::json frame_json(const std::string& scene, const RenderSettings& settings) {
     nlohmann::json json{{"scene", scene}};
     for (const RenderOption& row : render_options())
-        json[std::string(row.name)] = row.get(settings);
+        if (is_told(row, settings)) json[std::string(row.name)] = row.get(settings);
     return json;
 }
 

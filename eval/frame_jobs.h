@@ -26,6 +26,21 @@ struct FrameJob {
 /// the planes that some scheme reads, and no other.
 std::vector<FrameJob> frame_jobs(const std::vector<PlannedCell>& plan);
 
+/// A job's first cell with the job's settings, then, where the matrix asks for it, as each moved
+/// camera sees it.
+std::vector<Cell> views_of(const FrameJob& job, const Matrix& matrix);
+
+struct PlannedRender {
+    std::string scene;  ///< its file
+    RenderSettings settings;
+};
+
+/// All that jobs trace: frames, and each reference once.
+std::vector<PlannedRender> renders_of(const std::vector<FrameJob>& jobs, const Matrix& matrix);
+
+/// The frame of a cell's settings, by its method.
+MethodRender render_frame(const Cell& cell, const Scene& scene, const Progress& progress = {});
+
 /// The planes of a frame that a cell needs.
 Planes planes_read_by(const Cell& cell);
 

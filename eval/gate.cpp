@@ -167,6 +167,14 @@ const char* rule_of(CellFaultKind kind) {
     return "stale cell";
 }
 
+std::vector<Verdict> faults_of(const RunGroup& group) {
+    std::vector<Verdict> verdicts;
+    for (const CellFault& fault : group.faults)
+        verdicts.push_back(
+            fact(Outcome::fail, rule_of(fault.kind), fault.cell + ": " + fault.reason));
+    return verdicts;
+}
+
 /// "spp: 16 then, 32 now; ..."
 std::string differences(const Json& then, const Json& now) {
     std::set<std::string> keys;
@@ -226,12 +234,7 @@ class Check {
     void judge(const RunGroup& group) {
         const GateClass& gate = class_of(run_.classes, group.params);
         used_.insert(gate.name);
-        if (!group.faults.empty()) {
-            for (const CellFault& fault : group.faults)
-                add({fact(Outcome::fail, rule_of(fault.kind), fault.cell + ": " + fault.reason)},
-                    group.name, gate.name);
-            return;
-        }
+        if (!group.faults.empty()) return add(faults_of(group), group.name, gate.name);
         add(judge_sound(group, gate), group.name, gate.name);
     }
 
@@ -269,6 +272,18 @@ class Check {
 };
 
 }  // namespace
+
+std::vector<Verdict> judge_faults(const GateRun& run) {
+    std::vector<Verdict> verdicts;
+    for (const RunGroup& group : run.groups) {
+        for (Verdict& verdict : faults_of(group)) {
+            verdict.group = group.name;
+            verdict.class_name = class_of(run.classes, group.params).name;
+            verdicts.push_back(std::move(verdict));
+        }
+    }
+    return verdicts;
+}
 
 double explained_by_noise_db(const MetricInfo& metric, double k_sigma, const Side& now,
                              const Side& then) {

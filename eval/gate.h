@@ -63,6 +63,9 @@ struct GateResult {
 /// Throws Error(usage) if the baseline is of another matrix.
 GateResult check_run(const GateRun& run, const Baseline& baseline);
 
+/// Cells that are missing, failed, stale or not finite, as verdicts that fail.
+std::vector<Verdict> judge_faults(const GateRun& run);
+
 /// The quality rules alone, of one group without faults. A group of another question is no match.
 std::vector<Verdict> judge_quality(const RunGroup& group, const GateClass& gate,
                                    const BaselineGroup& baseline);

@@ -47,7 +47,9 @@ std::size_t non_finite_values(const Json& row) {
         const Json number = value.is_object() ? value.value("count", Json()) : value;
         return number.is_number_unsigned() ? number.get<std::size_t>() : 0;
     };
-    return std::max(count("metrics", "non_finite"), count("counts", "non_finite_pixels"));
+    const bool is_injected = row.value("params", Json::object()).contains("inject");
+    return std::max(count("metrics", "non_finite"),
+                    is_injected ? 0 : count("counts", "non_finite_pixels"));
 }
 
 class Reader {

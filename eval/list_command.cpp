@@ -21,6 +21,9 @@ nlohmann::json scheme_rows() {
         for (const PlaneInfo& plane : all_planes()) {
             if (scheme.needs.has(plane.plane)) row["needs"].push_back(plane.name);
         }
+        for (const PlaneInfo& plane : all_planes()) {
+            if (scheme.guide_reads.has(plane.plane)) row["guide"].push_back(plane.name);
+        }
         rows.push_back(row);
     }
     return rows;

@@ -2,13 +2,16 @@
 #include "eval/matrix.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "eval/axes.h"
+#include "eval/failure_needs.h"
 #include "eval/render_options.h"
 
 namespace vecino {
@@ -29,6 +32,29 @@ void for_each_assignment(const Axes& axes, const std::function<void(const Assign
     descend(axes.begin());
 }
 
+/// Before any is made: more would take days to run, and fill the memory before.
+void require_few_cells(const Axes& axes, const JsonValue& json) {
+    constexpr double kMostCells = 100000;
+    double count = 1;
+    for (const auto& [key, values] : axes) count *= static_cast<double>(values.size());
+    if (count <= kMostCells) return;
+    char text[64];
+    std::snprintf(text, sizeof text, "%.10g cells", count);
+    json.fail(text, "at most 100000");
+}
+
+/// Cells have folders of their names.
+void require_folder_name(const std::string& name, const std::string& file) {
+    constexpr std::size_t kLongest = 200;
+    const bool is_long = name.size() > kLongest;
+    if (!is_long && name == one_line(name)) return;
+    throw Error(ExitCode::usage,
+                one_line(file + ": /axes: found the cell name " +
+                         (is_long ? name.substr(0, 60) + "... of " + std::to_string(name.size()) +
+                                        " bytes, allowed: at most 200"
+                                  : name + ", allowed: names without control characters")));
+}
+
 bool matches(const Assignment& cell, const Axes& pattern) {
     return std::ranges::all_of(pattern, [&](const auto& entry) {
         const auto found = cell.find(entry.first);
@@ -39,50 +65,19 @@ bool matches(const Assignment& cell, const Axes& pattern) {
     });
 }
 
-Extent low_size(const RenderSettings& settings) {
-    return reduced(settings.size, settings.reduction);
-}
-
-/// What decides the ceiling: all that decides the reference, and the blocks.
-bool decides_ceiling(std::string_view option) {
-    return option == "size" || option == "reduction" || option == "max_depth";
-}
-
-/// Of an image from elsewhere that rebuilds a frame of ours, all that decides the frame.
-bool reads(const Cell& cell, std::string_view option) {
-    const ImageSource& image = *cell.image;
-    if (cell.is_against_render && (option == "size" || option == "max_depth")) return true;
-    if (option == "size")
-        return image.reads_frame() || image.reads("width") || image.reads("height");
-    return image.reads_frame() || image.reads(option);
-}
-
-bool decides(const Cell& cell, std::string_view option) {
-    switch (cell.kind) {
-        case CellKind::blocky_ceiling:
-            return decides_ceiling(option);
-        case CellKind::image:
-            return reads(cell, option);
-        case CellKind::path:
-        case CellKind::method:
-            return option != "reduction";
-        case CellKind::scheme:
-            break;
-    }
-    return true;
-}
-
 class Expansion {
   public:
     explicit Expansion(const Matrix& matrix)
-        : matrix_(matrix), json_(matrix.document, matrix.file) {}
+        : matrix_(matrix), json_(matrix.document, matrix.file), needs_(json_, matrix.failures) {}
 
     std::vector<Cell> run() {
         if (json_.has("fixed")) {
             for (const auto& [key, value] : json_.at("fixed").members())
                 fixed_.insert_or_assign(key, value);
         }
-        const Axes axes = read_axes(json_.at("axes"));
+        Axes axes = read_axes(json_.at("axes"));
+        const bool names_scenes = axes.contains("scene") || fixed_.contains("scene");
+        if (!names_scenes && !needs_.scenes().empty()) axes["scene"] = needs_.scenes();
         add_axes(axes);
         if (json_.has("include")) {
             for (const JsonValue& extra : json_.at("include").elements()) add_include(axes, extra);
@@ -95,14 +90,23 @@ class Expansion {
     }
 
   private:
+    /// Scene by scene, with what each needs.
+    void for_each_needed(const Axes& axes, const std::function<void(const Assignment&)>& visit) {
+        needed_.clear();
+        if (!axes.contains("scene")) return for_each_assignment(axes, visit);
+        for (const JsonValue& scene : axes.at("scene"))
+            for_each_assignment(needs_.apply(axes, scene, needed_), visit);
+    }
+
     void add_axes(const Axes& axes) {
+        require_few_cells(axes, json_.at("axes"));
         std::vector<Axes> excluded;
         if (json_.has("exclude")) {
             for (const JsonValue& pattern : json_.at("exclude").elements()) {
                 excluded.push_back(read_axes(pattern));
             }
         }
-        for_each_assignment(axes, [&](const Assignment& assignment) {
+        for_each_needed(axes, [&](const Assignment& assignment) {
             const auto fits = [&](const Axes& pattern) { return matches(assignment, pattern); };
             if (std::ranges::none_of(excluded, fits)) add(assignment);
         });
@@ -124,12 +128,14 @@ class Expansion {
         }
         if (own.contains("scheme") || own.contains("method")) axes.erase("image");
         for (const auto& [key, values] : own) axes.insert_or_assign(key, values);
-        for_each_assignment(axes, [&](const Assignment& assignment) { add(assignment); });
+        require_few_cells(axes, extra);
+        for_each_needed(axes, [&](const Assignment& assignment) { add(assignment); });
     }
 
     std::optional<JsonValue> value(const Assignment& assignment, const std::string& key) const {
         if (const auto found = assignment.find(key); found != assignment.end())
             return found->second;
+        if (const auto found = needed_.find(key); found != needed_.end()) return found->second;
         if (const auto found = fixed_.find(key); found != fixed_.end()) return found->second;
         return std::nullopt;
     }
@@ -151,6 +157,7 @@ class Expansion {
         push_ceiling(assignment);
         Cell cell = make_cell(assignment, CellKind::scheme);
         cell.scheme = &find_scheme(scheme->string());
+        cell.parameters = cell.scheme->defaults;
         read_scheme_options(cell, assignment);
         set_name(cell, assignment);
         cell.against = against;
@@ -190,7 +197,7 @@ class Expansion {
         Cell ceiling = make_cell(assignment, CellKind::blocky_ceiling);
         ceiling.group = stem(ceiling.scene) + "." + ceiling.method();
         ceiling.group += ".f" + std::to_string(ceiling.settings.reduction);
-        append_render_slugs(ceiling.group, assignment, {"size", "max_depth"});
+        append_render_slugs(ceiling.group, assignment, {"size", "max_depth", "camera_shift"});
         ceiling.name = ceiling.group;
         push(std::move(ceiling));
     }
@@ -204,6 +211,7 @@ class Expansion {
         cell.scene = (std::filesystem::path(folder_of(matrix_)) / scene->string())
                          .lexically_normal()
                          .string();
+        if (kind == CellKind::scheme) cell.inject = needs_.injections(scene->string());
         for (const RenderOption& row : render_options()) {
             const bool is_whole = kind == CellKind::path || kind == CellKind::method;
             if (row.name == "reduction" && is_whole) continue;
@@ -221,8 +229,9 @@ class Expansion {
                 row.set(cell.parameters, *given);
         }
         if (const auto budget = value(assignment, "budget")) cell.budget = budget_of(*budget);
-        cell.settings.spp = budgeted_spp(cell.budget, cell.spp_asked,
-                                         {cell.settings.size, low_size(cell.settings)});
+        cell.settings.spp = budgeted_spp(
+            cell.budget, cell.spp_asked,
+            {cell.settings.size, reduced(cell.settings.size, cell.settings.reduction)});
     }
 
     /// Appends what the assignment gives for the named options; for all but reduction and seed when
@@ -264,6 +273,7 @@ class Expansion {
     }
 
     void push(Cell cell) {
+        require_folder_name(cell.name, matrix_.file);
         scene_order_.try_emplace(cell.scene, scene_order_.size());
         const auto [same, is_new] = by_name_.try_emplace(cell.name, cell.parameters_json());
         if (is_new) {
@@ -278,6 +288,8 @@ class Expansion {
     const Matrix& matrix_;
     JsonValue json_;
     Assignment fixed_;
+    FailureNeeds needs_;
+    Assignment needed_;  ///< by the scene at hand
     std::vector<Cell> cells_;
     std::map<std::string, nlohmann::json> by_name_;
     std::map<std::string, std::size_t> scene_order_;
@@ -287,45 +299,6 @@ class Expansion {
 
 std::string stem(const std::string& path) {
     return std::filesystem::path(path).stem().string();
-}
-
-std::string Cell::method() const {
-    if (kind == CellKind::blocky_ceiling) return "blocky_ceiling";
-    if (kind == CellKind::image) return image->name;
-    if (kind == CellKind::method) return std::string(render_method->name);
-    return kind == CellKind::path ? "path" : std::string(scheme->name);
-}
-
-nlohmann::json Cell::parameters_json() const {
-    nlohmann::json json{{"scene", scene}, {"method", method()}};
-    for (const RenderOption& row : render_options()) {
-        if (decides(*this, row.name)) json[std::string(row.name)] = row.get(settings);
-    }
-    if (kind == CellKind::image) {
-        json["image"] = image->json;
-        if (json.contains("spp")) json["spp_asked"] = spp_asked;
-        return json;
-    }
-    if (kind == CellKind::blocky_ceiling) return json;
-    json["spp_asked"] = spp_asked;
-    json["budget"] = budget_name(budget);
-    for (const MethodOption& row : method_options()) {
-        if (render_method != nullptr && render_method->reads(row.name))
-            json[std::string(row.name)] = row.get(method_parameters);
-    }
-    if (scheme == nullptr) return json;
-    for (const SchemeOption& row : scheme_options()) {
-        if (scheme->reads(row.name)) json[std::string(row.name)] = row.slug(parameters);
-    }
-    if (scheme->reads("window")) json["window"] = parameters.window;
-    return json;
-}
-
-double Cell::samples_ratio() const {
-    if (kind == CellKind::blocky_ceiling || kind == CellKind::image) return 0;
-    const auto full = static_cast<double>(settings.size.area());
-    const auto low = static_cast<double>(low_size(settings).area());
-    return static_cast<double>(settings.spp) * low / (static_cast<double>(spp_asked) * full);
 }
 
 std::vector<Cell> expand(const Matrix& matrix) {
@@ -352,6 +325,7 @@ RenderSettings reference_settings(const Matrix& matrix, const Cell& cell) {
     RenderSettings settings = matrix.reference;
     settings.size = cell.settings.size;
     settings.max_depth = cell.settings.max_depth;
+    settings.camera_shift = cell.settings.camera_shift;
     settings.reduction = 1;
     return settings;
 }

@@ -7,12 +7,15 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/render.h"
 #include "eval/budget.h"
+#include "eval/failure.h"
 #include "eval/image_source.h"
+#include "eval/stability_spec.h"
 #include "filters/methods.h"
 #include "filters/schemes.h"
 
@@ -45,6 +48,7 @@ struct Cell {
     SchemeParameters parameters;         ///< of a scheme
     MethodParameters method_parameters;  ///< of a render method
     RenderSettings settings;             ///< of the frame that the cell reads
+    std::vector<Injection> inject;       ///< into that frame, before a scheme reads it
 
     /// The scheme's, render method's or image source's name, "path" or "blocky_ceiling".
     [[nodiscard]] std::string method() const;
@@ -55,6 +59,10 @@ struct Cell {
     [[nodiscard]] double samples_ratio() const;
 };
 
+/// Of an image from elsewhere: whether the option of renders decides it. All that decides a frame
+/// does, if it rebuilds one of ours.
+bool reads(const Cell& image, std::string_view option);
+
 struct Matrix {
     std::string name;
     std::string file;
@@ -63,7 +71,9 @@ struct Matrix {
     /// Held against instead, where the matrix names a file.
     std::shared_ptr<const ImageSource> reference_source;
     std::map<std::string, std::shared_ptr<const ImageSource>> images;  ///< by name
-    std::vector<std::string> metrics;  ///< of those on request, which to measure
+    std::vector<std::string> metrics;        ///< of those on request, which to measure
+    std::vector<FailureCase> failures;       ///< whose scenes are judged
+    std::optional<StabilitySpec> stability;  ///< none: not asked for
     int repeat = 1;  ///< timings of a stage that takes under 0.5 s; the median counts
 };
 

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::string_view kReferenceKeys[] = {"spp", "light_sampling", "sampler", "seed"};
-constexpr std::string_view kParts[] = {"axes",      "fixed",   "images",
-                                       "reference", "measure", "reproduction"};
+constexpr std::string_view kParts[] = {"axes",    "fixed",     "images",      "reference",
+                                       "measure", "stability", "reproduction"};
 
 RenderSettings read_reference(const JsonValue& json) {
     RenderSettings settings;
@@ -80,6 +80,28 @@ void read_measure(const JsonValue& json, Matrix& matrix) {
     }
 }
 
+/// A file shows what one camera sees.
+void read_stability(const JsonValue& json, Matrix& matrix) {
+    matrix.stability = read_stability(json);
+    if (matrix.reference_source == nullptr) return;
+    if (json.has("shifts") && !matrix.stability->shifts.empty())
+        json.at("shifts").fail("shifts of a camera whose reference is a file", "no shifts");
+    matrix.stability->shifts.clear();
+}
+
+void read_failures(const JsonValue& json, Matrix& matrix) {
+    for (const JsonValue& each : json.elements()) {
+        matrix.failures.push_back(read_failure(each));
+        const FailureCase& failure = matrix.failures.back();
+        if (failure.scene.empty()) each.fail("no key \"scene\"", "\"scene\" in an object");
+        const auto same = [&](const FailureCase& other) {
+            return stem(other.scene) == stem(failure.scene) || other.title == failure.title;
+        };
+        if (std::ranges::count_if(matrix.failures, same) > 1)
+            each.fail("a scene or title that stands here twice", "every one once");
+    }
+}
+
 void check_fixed(const JsonValue& json) {
     json.require_keys(cell_keys());
     for (const auto& [key, value] : json.members()) require_cell_value(key, value);
@@ -110,12 +132,15 @@ Matrix matrix_of(Json document, const std::string& file) {
     matrix.document = std::move(document);
     const JsonValue json(matrix.document, file);
     json.require_keys({"$schema", "extends", "name", "axes", "exclude", "include", "fixed",
-                       "images", "reference", "measure", "gates", "reproduction"});
+                       "failures", "images", "reference", "measure", "stability", "gates",
+                       "reproduction"});
     if (json.has("$schema")) (void)json.at("$schema").string();
     matrix.name = json.at("name").string();
     read_reference(json.at("reference"), matrix);
     if (json.has("images")) read_images(json.at("images"), matrix);
     if (json.has("measure")) read_measure(json.at("measure"), matrix);
+    if (json.has("stability")) read_stability(json.at("stability"), matrix);
+    if (json.has("failures")) read_failures(json.at("failures"), matrix);
     check_cells(json, matrix);
     (void)read_gate_classes(json);
     if (json.has("reproduction")) (void)read_reproduction(json);
@@ -149,7 +174,7 @@ void move_file(Json& json, const fs::path& from, const fs::path& to) {
 }
 
 void move_files(Json& base, const fs::path& from, const fs::path& to) {
-    for (const char* key : {"axes", "fixed", "exclude", "include"}) {
+    for (const char* key : {"axes", "fixed", "exclude", "include", "failures"}) {
         if (base.contains(key)) move_scenes(base[key], from, to);
     }
     if (base.contains("reference")) move_file(base["reference"], from, to);
@@ -174,8 +199,9 @@ Json merged(Json base, const Json& own) {
 }
 
 Matrix load(const std::string& path, std::vector<std::string>& opened) {
-    const Json own = parse_json_file(path);
+    Json own = parse_json_file(path);
     const JsonValue json(own, path);
+    if (json.has("failures")) own["failures"] = embedded_failures(json.at("failures"));
     if (!own.is_object() || !json.has("extends")) return matrix_of(own, path);
     (void)json.at("name").string();
     const fs::path folder = fs::path(path).parent_path().lexically_normal();

@@ -9,6 +9,7 @@
 #include "eval/image_source.h"
 #include "eval/metrics.h"
 #include "eval/render_options.h"
+#include "eval/stability_spec.h"
 #include "filters/methods.h"
 #include "filters/schemes.h"
 
@@ -101,6 +102,11 @@ json reference_schema() {
     return schema;
 }
 
+/// Objects are what run.json keeps of the files (vecino schema failure).
+json failures_schema() {
+    return array_schema({{"type", {"string", "object"}}}, {1, 0});
+}
+
 json metrics_schema() {
     return array_schema({{"enum", metrics_on_request()}}, {0, 0});
 }
@@ -120,10 +126,16 @@ constexpr DescribedKey kMatrixKeys[] = {
     {"include", optional, "cells beside those of the axes, whose values these replace",
      patterns_schema},
     {"fixed", optional, "values of every cell", cell_schema},
+    {"failures", optional,
+     "failure files, or folders of them, whose scenes are shown and judged; the scenes are the "
+     "axis \"scene\" where there is none",
+     failures_schema},
     {"images", optional, "methods whose images vecino does not make, by name", images_schema},
     {"reference", optional, "the render, or the file, that cells are held against",
      reference_schema},
     {"measure", optional, "", [] { return object_schema(kMeasureKeys); }},
+    {"stability", optional, "measure what seeds, moved cameras and other parameters change",
+     stability_schema},
     {"gates", optional, "classes of cells and how much worse than a baseline each may be",
      gates_schema},
     {"reproduction", optional, "what a publication states, to be held against the results",
@@ -131,6 +143,23 @@ constexpr DescribedKey kMatrixKeys[] = {
 };
 
 }  // namespace
+
+json free_axes_schema() {
+    json schema = cell_schema();
+    for (const auto& [key, property] : schema["properties"].items()) {
+        const json one = property;
+        property = {{"anyOf", {one, array_schema(one, {1, 0})}}};
+        property["description"] = one.value("description", "");
+    }
+    return schema;
+}
+
+json free_selection_schema() {
+    json schema = free_axes_schema();
+    for (const char* key : {"scheme", "image"}) schema["properties"].erase(key);
+    schema["properties"]["method"] = {{"type", {"string", "array"}}};
+    return schema;
+}
 
 json matrix_schema() {
     json schema = object_schema(kMatrixKeys);

@@ -16,4 +16,9 @@ nlohmann::json reproduction_schema();
 /// The part of it that "gates" takes.
 nlohmann::json gates_schema();
 
+/// Keys of cells with one value or several, and of results, without references to a matrix's
+/// schema.
+nlohmann::json free_axes_schema();
+nlohmann::json free_selection_schema();
+
 }  // namespace vecino

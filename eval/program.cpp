@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Parses, runs the chosen command, turns errors into one line and an exit code.
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -34,6 +37,16 @@ std::string explain(CLI::App& app, const std::string& command, const CLI::ParseE
         allowed += (allowed.empty() ? "" : ", ") + each->get_name();
     }
     return "found \"" + command + "\", allowed: " + allowed;
+}
+
+/// Results that go to a full disk are lost: that is no success.
+void require_printed() {
+    errno = 0;
+    const bool printed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    if (!printed) {
+        const char* const known = errno != 0 ? std::strerror(errno) : nullptr;
+        cannot_write("standard output", known != nullptr ? known : kWriteFailed);
+    }
 }
 
 int parse_and_run(CLI::App& app, int argc, const char* const* argv, Action& chosen) {
@@ -74,8 +87,11 @@ int run_program(int argc, const char* const* argv) {
         "3 sizes, channels or planes do not fit; 4 a file cannot be read or written; 5 non-finite "
         "pixels;\n"
         "64 bad usage or JSON content; 125 not done, as answered; 130 interrupted.");
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is then a write that fails
     try {
-        return parse_and_run(app, argc, argv, chosen);
+        const int code = parse_and_run(app, argc, argv, chosen);
+        require_printed();
+        return code;
     } catch (const Error& error) {
         return fail(error.code(), error.what());
     } catch (const std::bad_alloc&) {

@@ -156,6 +156,19 @@ Json part_of_error(const Json& error, const std::string& region) {
     return error.value("regions", Json::object()).value(region, Json());
 }
 
+void mark_limited(Json& row) {
+    if (!row.contains("metrics")) return;
+    const auto flag = [&](const Json& metrics, const std::string& region) {
+        const auto is_limited =
+            limited_by_reference(metrics, part_of_error(row["reference_error"], region));
+        return is_limited ? Json(*is_limited) : Json();
+    };
+    row["limited_by_reference"] = flag(row["metrics"], "");
+    if (!row["metrics"].contains("regions")) return;
+    for (const auto& [name, region] : row["metrics"]["regions"].items())
+        row["limited_regions"][name] = flag(region, name);
+}
+
 double decibels_of(double mse) {
     return -10.0 * std::log10(mse);
 }

@@ -49,6 +49,10 @@ std::optional<bool> limited_by_reference(const nlohmann::json& metrics,
 /// What error says of a region, or of the whole image ("").
 nlohmann::json part_of_error(const nlohmann::json& error, const std::string& region);
 
+/// Puts "limited_by_reference", and "limited_regions" by region, into a row of results.jsonl that
+/// has metrics.
+void mark_limited(nlohmann::json& row);
+
 /// A mean squared error in the decibels of psnr_float_db, and back.
 double decibels_of(double mse);
 double mse_of(double decibels);

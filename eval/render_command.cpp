@@ -12,6 +12,7 @@
 #include "core/timing.h"
 #include "eval/cell_sources.h"
 #include "eval/commands.h"
+#include "eval/method_maps.h"
 #include "eval/part_metadata.h"
 #include "eval/progress.h"
 #include "eval/render_metadata.h"
@@ -28,6 +29,7 @@ struct RenderArguments {
     std::string method = "path";
     std::map<std::string, std::string> method_options;  ///< likewise
     std::string planes;
+    std::string maps;     ///< file of the method's maps, or empty
     std::string samples;  ///< A:B, or empty
     int threads = 0;
     int simd_width = 0;
@@ -120,18 +122,30 @@ auto with_progress(const Scene& scene, const Trace& trace) {
     return trace([&](double done) { return bar.update(done); });
 }
 
+/// The maps go into a file of their own; of these, the frame keeps what it was asked for.
+void save_maps(const RenderArguments& arguments, Planes asked, MethodRender& result) {
+    if (arguments.maps.empty()) return;
+    Frame& frame = result.render.frame;
+    save_method_maps(frame.sample_count, result, arguments.maps);
+    if (!asked.has(Plane::count)) frame.sample_count = {};
+}
+
 ExitCode render_image(const RenderArguments& arguments, const RenderSettings& settings,
                       const Scene& scene) {
     const Method& method = find_method(arguments.method);
-    const MethodRequest request{scene, settings, method_parameters_of(arguments)};
-    const MethodRender result = with_progress(
+    MethodRequest request{scene, settings, method_parameters_of(arguments)};
+    if (!arguments.maps.empty()) request.settings.planes.add(Plane::count);
+    MethodRender result = with_progress(
         scene, [&](const Progress& progress) { return render(method, request, progress); });
+    save_maps(arguments, settings.planes, result);
     const RenderStatistics& s = result.render.statistics;
     const Frame& frame = result.render.frame;
     Metadata metadata =
         render_metadata(arguments.scene, settings, s.scene_s + s.trace_s + result.reconstruct_s);
     describe_method(method, request.parameters, metadata);
     const Stopwatch write_watch;
+    describe_schedule(result, metadata);
+    report_schedule(result);
     save_frame(frame, arguments.output, metadata);
     print_result(arguments, result, size_text(frame.size()), write_watch.seconds());
     return report_non_finite(s, arguments.output);
@@ -163,8 +177,12 @@ ExitCode run_render(const RenderArguments& arguments) {
     require_read_options(arguments, method);
     (void)method_parameters_of(arguments);  // before the scene is read
     const bool in_part = !arguments.samples.empty();
+    if (!arguments.maps.empty()) require_map_extension(arguments.maps);
     if (in_part) {
         interval_of(arguments.samples, settings.spp);  // before the scene is read
+        if (!arguments.maps.empty())
+            throw Error(ExitCode::usage,
+                        "command line: --maps: found with --samples, allowed: without");
         if (!is_exr(arguments.output)) {
             throw Error(ExitCode::usage, arguments.output +
                                              ": found another extension, allowed with --samples: "
@@ -178,6 +196,7 @@ ExitCode run_render(const RenderArguments& arguments) {
     }
     const Scene scene = load_scene(arguments.scene);
     require_writable(arguments.output);
+    if (!arguments.maps.empty()) require_writable(arguments.maps);
     return in_part ? render_samples(arguments, settings, scene)
                    : render_image(arguments, settings, scene);
 }
@@ -207,6 +226,11 @@ void add_render_command(CLI::App& app, Action& chosen) {
         ->add_option(
             "--planes", arguments->planes,
             "all, or a list such as radiance,normal,id; all leaves out albedo_mean and normal_mean")
+        ->check(not_empty());
+    command
+        ->add_option("--maps", arguments->maps,
+                     "write what the method did where, samples per pixel first (.exr: channels; "
+                     ".png, .bmp: pictures side by side)")
         ->check(not_empty());
     command
         ->add_option("--samples", arguments->samples,

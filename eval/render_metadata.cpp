@@ -13,6 +13,12 @@ struct AttributeText {
     std::string operator()(auto number) const { return std::to_string(number); }
 };
 
+std::string decibel_text(double decibels) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f dB", decibels);
+    return text;
+}
+
 }  // namespace
 
 Metadata render_metadata(const std::string& scene, const RenderSettings& settings, double seconds) {
@@ -39,6 +45,26 @@ void describe_method(const Method& method, const MethodParameters& parameters, M
     }
 }
 
+void describe_schedule(const MethodRender& result, Metadata& metadata) {
+    const auto schedule = result.facts.find("schedule");
+    if (schedule != result.facts.end()) metadata["schedule"] = schedule->get<std::string>();
+}
+
+void report_schedule(const MethodRender& result) {
+    const nlohmann::json& facts = result.facts;
+    if (!facts.contains("schedule")) return;
+    std::string predicted;
+    for (const auto& [method, decibels] : facts["predicted_by_method"].items()) {
+        predicted += predicted.empty() ? "" : ", ";
+        predicted += method + " " + (decibels.is_null() ? "unknown" : decibel_text(decibels));
+    }
+    const RenderStatistics& s = result.render.statistics;
+    std::fprintf(stderr, "auto: %s: %s (predicted: %s); %.3f s; again by %s\n",
+                 facts["chosen"].get<std::string>().c_str(),
+                 facts["reason"].get<std::string>().c_str(), predicted.c_str(),
+                 s.trace_s + result.reconstruct_s, facts["schedule"].get<std::string>().c_str());
+}
+
 std::string attribute_text(const Metadata& metadata, const std::string& name) {
     const auto found = metadata.find(name);
     return found == metadata.end() ? "none" : std::visit(AttributeText{}, found->second);
@@ -51,6 +77,7 @@ nlohmann::json render_json(const MethodRender& result, double write_s) {
               {"scene", s.scene_s},
               {"trace", s.trace_s},
               {"reconstruct", result.reconstruct_s},
+              {"stages", result.stage_s},
               {"write", write_s}}},
             {"samples", s.samples},
             {"rays", s.rays},

@@ -19,6 +19,12 @@ Metadata render_metadata(const std::string& scene, const RenderSettings& setting
 /// Of another method: its name and those of its options that it reads.
 void describe_method(const Method& method, const MethodParameters& parameters, Metadata& metadata);
 
+/// The schedule of a method that chose one.
+void describe_schedule(const MethodRender& result, Metadata& metadata);
+
+/// Says on stderr what was chosen and why, if the method had a choice.
+void report_schedule(const MethodRender& result);
+
 /// An attribute as text, for errors.
 std::string attribute_text(const Metadata& metadata, const std::string& name);
 

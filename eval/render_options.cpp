@@ -19,6 +19,7 @@ constexpr IntegerKind kSide{1, 65536};
 constexpr IntegerKind kReduction{1, 65536};
 constexpr IntegerKind kSpp{1, kMostInt};
 constexpr IntegerKind kDepth{0, 1000};
+constexpr RealKind kShift{{-65536.0, 65536.0}};
 constexpr IntegerKind kSeed{0, kMostInt};
 constexpr Named<LightSampling> kLightSamplings[] = {
     {"none", LightSampling::none},
@@ -63,6 +64,25 @@ void set_size(RenderSettings& settings, const JsonValue& json) {
     if (!size_fault(settings.size).empty()) {
         json.fail("at most " + std::to_string(kMaxPixels) + " pixels");
     }
+}
+
+void set_camera_shift(RenderSettings& settings, const JsonValue& json) {
+    const auto numbers = json.raw().is_array() ? json.elements() : std::vector<JsonValue>{};
+    if (numbers.size() != 2) json.fail("DX,DY on the command line, [DX, DY] in a matrix");
+    settings.camera_shift = {kShift.read(numbers[0]), kShift.read(numbers[1])};
+}
+
+nlohmann::json camera_shift_schema() {
+    return array_schema(kShift.schema(), {2, 2});
+}
+
+/// "shift0.25_0": the fewest digits that read back as the same numbers.
+std::string camera_shift_slug(Settings s) {
+    const auto digits = [](float value) {
+        char text[32];
+        return std::string(text, std::to_chars(std::begin(text), std::end(text), value).ptr);
+    };
+    return "shift" + digits(s.camera_shift.x) + "_" + digits(s.camera_shift.y);
 }
 
 nlohmann::json size_schema() {
@@ -115,6 +135,10 @@ const RenderOption kOptions[] = {
      read_into<kFirstHit, &RenderSettings::first_hit>,
      [](Settings s) { return nlohmann::json(name_of(kFirstHits, s.first_hit)); },
      [](Settings s) { return name_of(kFirstHits, s.first_hit); }, schema_of<kFirstHit>},
+    {"camera_shift", "--camera-shift", "DX,DY, -65536 to 65536 each", "pixel (x, y) shows what is at (x + DX, y + DY) without it",
+     set_camera_shift,
+     [](Settings s) { return nlohmann::json{s.camera_shift.x, s.camera_shift.y}; },
+     camera_shift_slug, camera_shift_schema},
     {"seed", "--seed", "0 to 2147483647", "of the random numbers",
      read_into<kSeed, &RenderSettings::seed>,
      [](Settings s) { return nlohmann::json(s.seed); },
@@ -145,7 +169,18 @@ nlohmann::json option_value(const std::string& text) {
         read_whole(text.substr(cross + 1), height)) {
         return {width, height};
     }
+    const std::size_t comma = text.find(',');
+    double x = 0;
+    double y = 0;
+    if (comma != std::string::npos && read_whole(text.substr(0, comma), x) &&
+        read_whole(text.substr(comma + 1), y) && std::isfinite(x) && std::isfinite(y)) {
+        return {x, y};
+    }
     return text;
+}
+
+bool is_told(const RenderOption& row, const RenderSettings& settings) {
+    return row.name != "camera_shift" || settings.camera_shift != glm::vec2(0.0f);
 }
 
 }  // namespace vecino

@@ -16,6 +16,7 @@ std::string write_report(const ReportData& data, const std::string& output,
                          std::optional<PlanePrecision> embedded) {
     std::string path = output.empty() ? data.directory + "/report.html" : output;
     write_reproduction(data);
+    write_failures(data);
     const bool is_markdown = std::filesystem::path(path).extension() == ".md";
     write_text_file(path, is_markdown
                               ? report_markdown(data)

@@ -10,6 +10,7 @@ namespace vecino {
 extern const std::string_view kReportHtml;
 extern const std::string_view kReportCss;
 extern const std::string_view kReproductionCss;
+extern const std::string_view kCatalogueCss;
 extern const std::string_view kReportChartsJs;
 extern const std::string_view kConvergenceJs;
 extern const std::string_view kMatrixCss;

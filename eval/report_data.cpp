@@ -149,6 +149,22 @@ void set_decimals(ReportData& data) {
     data.relmse_decimals = decimals_for(least_relmse, 2);
 }
 
+/// Before claims are judged, which may be about signatures.
+void read_failures_of(ReportData& data) {
+    const Json config = data.run.value("config", Json::object());
+    if (!config.is_object()) return;
+    data.failures =
+        failure_results(data.directory, data.rows, JsonValue(config, data.directory + "/run.json"));
+    for (GroupSummary& group : data.groups) {
+        const FailureResult* const result = data.failures.find(group.group);
+        if (result == nullptr) continue;
+        // What passes by far is the same as none: ratios would make much of it.
+        const double least = 0.1 * data.failures.cases[result->failure].pass_below;
+        for (const double value : result->by_seed)
+            group.signature_by_seed.push_back(std::max(value, least));
+    }
+}
+
 /// The claims stand in the matrix that run.json keeps.
 void read_reproduction_of(ReportData& data) {
     const Json config = data.run.value("config", Json::object());
@@ -172,6 +188,11 @@ ReportData read_report_data(const std::string& directory) {
     data.run = read_run(directory + "/run.json");
     data.groups =
         summarise(data.rows, group_statistics(RunDirectory::open(data.directory), data.rows));
+    for (const auto& [name, stability] :
+         group_stability(RunDirectory::open(data.directory), data.rows)) {
+        std::ranges::find(data.groups, name, &GroupSummary::group)->stability = stability;
+    }
+    read_failures_of(data);
     read_reproduction_of(data);
     data.convergence = convergence(data.groups);
     for (const GroupSummary& group : data.groups) {
@@ -189,6 +210,11 @@ void write_reproduction(const ReportData& data) {
     const Json json =
         reproduction_json(data.reproduction->specification, data.reproduction->result);
     write_text_file(data.directory + "/reproduction.json", json.dump(1) + "\n");
+}
+
+void write_failures(const ReportData& data) {
+    if (data.failures.cases.empty()) return;
+    write_text_file(data.directory + "/failures.json", failures_json(data.failures).dump(1) + "\n");
 }
 
 std::vector<std::size_t> variants_of(const ReportData& data, const GroupSummary& group) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "eval/convergence.h"
+#include "eval/failure_results.h"
 #include "eval/reproduction.h"
 #include "eval/summary.h"
 
@@ -37,6 +38,7 @@ struct ReportData {
     std::vector<GroupSummary> groups;
     std::optional<ReportReproduction> reproduction;  ///< none: the matrix claims nothing
     std::vector<ConvergenceCurve> convergence;       ///< of path tracing; may be empty
+    Failures failures;                               ///< without cases if the matrix names none
     std::vector<std::string> scenes;                 ///< in the order of the groups
     std::vector<MethodStyle> methods;  ///< path tracing first, then schemes, then others
     std::vector<std::string> varying;  ///< parameters that tell groups apart
@@ -55,6 +57,7 @@ ReportData read_report_data(const std::string& directory);
 
 /// Writes the verdicts into the run directory, if there are any.
 void write_reproduction(const ReportData& data);
+void write_failures(const ReportData& data);
 
 /// Indices of the reproduction's variants that a group belongs to, whatever its spp.
 std::vector<std::size_t> variants_of(const ReportData& data, const GroupSummary& group);

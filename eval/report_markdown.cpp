@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "eval/commands.h"
+#include "eval/markdown_text.h"
 #include "eval/reference_error.h"
 #include "eval/reference_quality.h"
 #include "eval/report_facts.h"
@@ -16,44 +17,7 @@ namespace vecino {
 namespace {
 
 using Json = nlohmann::json;
-using Cells = std::vector<std::string>;
-
-/// As text of a table: nothing in it is markup, and it stays in its cell.
-std::string plain(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '\n' || c == '\r') {
-            result += ' ';
-        } else {
-            if (std::string_view("\\`*_[]<>|#").find(c) != std::string_view::npos) result += '\\';
-            result += c;
-        }
-    }
-    return result;
-}
-
-/// As code in a table: GitHub takes a bar for the end of the cell even there.
-std::string code(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '|') result += '\\';
-        result += c == '\n' || c == '\r' ? ' ' : c;
-    }
-    const bool has_tick = text.find('`') != std::string::npos;
-    return has_tick ? "`` " + result + " ``" : "`" + result + "`";
-}
-
-std::string row(const Cells& cells) {
-    std::string line = "|";
-    for (const std::string& cell : cells) line += " " + cell + " |";
-    return line + "\n";
-}
-
-std::string head(const Cells& names) {
-    std::string text = row(names) + "|";
-    for (std::size_t i = 0; i < names.size(); ++i) text += "---|";
-    return text + "\n";
-}
+using namespace markdown;
 
 std::string significant(double value, int digits) {
     char text[64];
@@ -267,6 +231,26 @@ std::string results(const ReportData& data) {
     return text;
 }
 
+std::string stability(const ReportData& data) {
+    if (!has_stability(data)) return "";
+    std::string text = "\n## Stability\n\n" + stability_introduction() + "\n\n";
+    for (const StabilityInfo& info : stability_columns())
+        text += "- *" + std::string(info.name) + "*: " + plain(std::string(info.formula)) + "\n";
+    for (const std::string& scene : data.scenes) {
+        const StabilityTable table = stability_table(data, scene);
+        if (table.rows.empty()) continue;
+        Cells names;
+        for (const std::string& name : table.names) names.push_back(plain(name));
+        text += "\n### Stability on " + plain(scene) + "\n\n" + head(names);
+        for (std::size_t i = 0; i < table.rows.size(); ++i) {
+            Cells cells{code(table.results[i])};
+            cells.insert(cells.end(), table.rows[i].begin(), table.rows[i].end());
+            text += row(cells);
+        }
+    }
+    return text;
+}
+
 std::string references(const ReportData& data) {
     std::string text =
         "\n## References\n\nA reference's own error, from the difference of its two halves, and "
@@ -301,8 +285,8 @@ std::string failures(const ReportData& data) {
 
 std::string report_markdown(const ReportData& data) {
     const std::string name = data.run.value("name", "Results");
-    return "# " + plain(name) + "\n\n" + facts(data) + reproduction(data) + results(data) +
-           references(data) + failures(data);
+    return "# " + plain(name) + "\n\n" + facts(data) + catalogue_markdown(data) +
+           reproduction(data) + results(data) + stability(data) + references(data) + failures(data);
 }
 
 }  // namespace vecino

@@ -99,7 +99,8 @@ std::string legend_remark(const std::string& method) {
 
 std::string style_text() {
     std::string text;
-    for (const auto& part : {kReportCss, kMatrixCss, kReproductionCss, kViewerCss}) text += part;
+    for (const auto& part : {kReportCss, kMatrixCss, kReproductionCss, kCatalogueCss, kViewerCss})
+        text += part;
     return text;
 }
 
@@ -140,11 +141,14 @@ std::string legend_html(const ReportData& data) {
 
 /// Links to the sections that not every run has.
 std::string contents_html(const ReportData& data) {
+    const std::string first =
+        data.failures.cases.empty() ? "" : "<a href=\"#catalogue\">Where methods fail</a> ";
     std::string html;
     if (!data.convergence.empty()) html += "<a href=\"#convergence\">Convergence</a> ";
-    if (!data.reproduction) return html;
+    if (has_stability(data)) html += "<a href=\"#stability\">Stability</a> ";
+    if (!data.reproduction) return first + html;
     const Reproduction& specification = data.reproduction->specification;
-    html = "<a href=\"#reproduction\">Reproduction</a> " + html;
+    html = first + "<a href=\"#reproduction\">Reproduction</a> " + html;
     if (!specification.graphs.empty()) html += "<a href=\"#graphs\">Graphs</a> ";
     if (!specification.figures.empty()) html += "<a href=\"#figures\">Figures</a> ";
     return html;
@@ -207,8 +211,10 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures) 
          {"picture_sources", pictures.has_linked ? "data: file: 'self'" : "data:"},
          {"script_sources", pictures.embedded ? "'unsafe-inline'" : "'unsafe-inline' file: 'self'"},
          {"facts", facts_html(data)},
+         {"catalogue", catalogue_html(data)},
          {"reproduction", reproduction_html(data)},
          {"convergence", convergence_html(data)},
+         {"stability", stability_html(data)},
          {"graphs", graphs_html(data)},
          {"figures", figures_html(data, pictures)},
          {"switches", chart_switches_html(data)},

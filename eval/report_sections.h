@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "eval/report_data.h"
 #include "eval/report_pictures.h"
@@ -16,6 +17,10 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures);
 
 /// The same results as Markdown tables. The same bytes for the same run directory.
 std::string report_markdown(const ReportData& data);
+
+/// Where methods fail: the chart of methods and failures. Empty without failures in the matrix.
+std::string catalogue_html(const ReportData& data);
+std::string catalogue_markdown(const ReportData& data);
 
 // About the run.
 std::string facts_html(const ReportData& data);
@@ -50,6 +55,19 @@ std::string figures_html(const ReportData& data, const ReportPictures& pictures)
 
 /// Error of path tracing against samples and time; empty where no groups differ in spp alone.
 std::string convergence_html(const ReportData& data);
+
+// Stability; empty where no matrix asked for it.
+bool has_stability(const ReportData& data);
+std::string stability_html(const ReportData& data);
+
+/// The same as texts, of one scene.
+struct StabilityTable {
+    std::vector<std::string> names;  ///< of the columns: the result, then those of the rows
+    std::vector<std::string> results;
+    std::vector<std::vector<std::string>> rows;
+};
+StabilityTable stability_table(const ReportData& data, const std::string& scene);
+std::string stability_introduction();
 
 // Pictures.
 std::string colour_bars_html(const ReportPictures& pictures);

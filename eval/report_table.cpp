@@ -127,6 +127,8 @@ std::vector<Column> result_columns(const ReportData& data) {
     using Group = const GroupSummary&;
     std::vector<Column> columns = {
         {"psnr_float_db", "dB", Better::higher, [&](Group g) { return psnr_float(data, g); }},
+        {"predicted", "dB", Better::neither,
+         [](Group g) { return g.predicted_db ? number(*g.predicted_db, 2) : Value{}; }},
         {"interior", "dB", Better::higher,
          [](Group g) { return region_psnr(g, Region::interior); }},
         {"edge", "dB", Better::higher, [](Group g) { return region_psnr(g, Region::edge); }},

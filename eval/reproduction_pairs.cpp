@@ -15,6 +15,7 @@ constexpr const char* kSceneKey = "scene";
 /// Mean squared errors, or variances, by seed.
 std::vector<double> values_of(const GroupSummary& group, Quantity quantity,
                               const RegionName& region) {
+    if (quantity == Quantity::signature) return group.signature_by_seed;
     const SeedStatistics* const statistics = group.statistics_of(region);
     if (statistics == nullptr) return {};
     return quantity == Quantity::noise ? statistics->noise_by_seed : statistics->mse;

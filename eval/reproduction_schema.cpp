@@ -87,7 +87,7 @@ constexpr DescribedKey kItemKeys[] = {
 constexpr DescribedKey kTestKeys[] = {
     {"quantity", required, "",
      [] {
-         return json{{"enum", {"quality", "noise"}}};
+         return json{{"enum", {"quality", "noise", "signature"}}};
      }},
     {"of", required, "the results", selection},
     {"is", required, "",

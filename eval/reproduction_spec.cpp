@@ -14,6 +14,7 @@ namespace {
 constexpr Named<Quantity> kQuantities[] = {
     {"quality", Quantity::quality},
     {"noise", Quantity::noise},
+    {"signature", Quantity::signature},
 };
 constexpr Named<Relation> kRelations[] = {
     {"higher", Relation::higher},

@@ -25,8 +25,9 @@ struct Variant {
 };
 
 enum class Quantity {
-    quality,  ///< psnr_float_db
-    noise,    ///< variance over seeds of the display values, mean over pixels and channels
+    quality,    ///< psnr_float_db
+    noise,      ///< variance over seeds of the display values, mean over pixels and channels
+    signature,  ///< of the failure that the scene shows (eval/failure.h)
 };
 
 enum class Relation { higher, lower, same };

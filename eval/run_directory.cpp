@@ -5,11 +5,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
-#include "core/error.h"
 #include "core/files.h"
 #include "eval/csv.h"
 
@@ -19,8 +20,7 @@ namespace {
 void make_folder(const std::string& path) {
     std::error_code error;
     std::filesystem::create_directories(path, error);
-    if (error)
-        throw Error(ExitCode::file, path + ": cannot make the directory: " + error.message());
+    if (error) throw WriteError(path + ": cannot make the directory: " + error.message());
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ void write_text_file(const std::string& path, const std::string& text) {
     std::ofstream stream(file.path(), std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream) throw Error(ExitCode::file, path + ": cannot be written");
+    if (!stream) cannot_write(path, kWriteFailed);
     file.replace_target();
 }
 
@@ -39,10 +39,12 @@ RunDirectory RunDirectory::create(const std::string& path) {
     RunDirectory directory(path);
     const std::string lock = directory.file(".lock");
     directory.lock_ = ::open(lock.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
-    if (directory.lock_ < 0) throw Error(ExitCode::file, lock + ": cannot be written");
+    if (directory.lock_ < 0) cannot_write(lock, std::strerror(errno));
     if (flock(directory.lock_, LOCK_EX | LOCK_NB) != 0) {
         throw Error(ExitCode::file, path + ": another run is writing to this directory");
     }
+    remove_abandoned(path);
+    require_writable(directory.file("results.jsonl"));
     return directory;
 }
 
@@ -88,7 +90,7 @@ void RunDirectory::append(const nlohmann::json& row) const {
     std::ofstream stream(path, std::ios::app | std::ios::binary);
     stream << (ends_line ? "" : "\n") << row.dump() << "\n";
     stream.close();
-    if (!stream) throw Error(ExitCode::file, path + ": cannot be written");
+    if (!stream) cannot_write(path, kWriteFailed);
 }
 
 void RunDirectory::write_run(const nlohmann::json& run) const {

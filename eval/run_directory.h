@@ -4,6 +4,7 @@
 //   run.json  results.jsonl  results.csv  report.html
 //   statistics.json    noise and bias of each group     equal_time.json  measured budgets
 //   reproduction.json  verdicts, if the matrix holds claims
+//   failures.json      numbers and verdicts, if it names failures
 //   references/SCENE-HASH.exr .png
 //   cells/CELL/image.exr image.png error.png error_signed.png, and cell.vti if asked for
 //   planes/cells/CELL.js  planes/references/SCENE-HASH.js   float values for the report's viewer

@@ -2,9 +2,9 @@
 #include "eval/run_matrix.h"
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
@@ -25,20 +25,6 @@ namespace {
 
 std::string frame_key(const std::string& scene, const RenderSettings& settings) {
     return frame_json(scene, settings).dump();
-}
-
-/// Of the whole image, and of its regions.
-void mark_limited(nlohmann::json& row) {
-    if (!row.contains("metrics")) return;
-    const auto flag = [&](const nlohmann::json& metrics, const std::string& region) {
-        const auto is_limited =
-            limited_by_reference(metrics, part_of_error(row["reference_error"], region));
-        return is_limited ? nlohmann::json(*is_limited) : nlohmann::json();
-    };
-    row["limited_by_reference"] = flag(row["metrics"], "");
-    if (!row["metrics"].contains("regions")) return;
-    for (const auto& [name, region] : row["metrics"]["regions"].items())
-        row["limited_regions"][name] = flag(region, name);
 }
 
 double traced_samples(const RenderSettings& settings) {
@@ -99,15 +85,8 @@ class Runner {
             for (const Cell* cell : job.cells) result.cells.push_back(cell->name);
         }
         result.samples = planned_samples(jobs);
-        std::set<std::string> references;
-        for (const FrameJob& job : jobs) {
-            const Cell& first = *job.cells.front();
-            if (job.traces) result.time_s += job.samples() / rate(first.scene, job.settings);
-            if (matrix_.reference_source != nullptr) continue;
-            const RenderSettings reference = reference_settings(matrix_, first);
-            if (!references.insert(frame_key(first.scene, reference)).second) continue;
-            result.time_s += traced_samples(reference) / rate(first.scene, reference);
-        }
+        for (const auto& [scene, settings] : renders_of(jobs, matrix_))
+            result.time_s += traced_samples(settings) / rate(scene, settings);
         return result;
     }
 
@@ -159,6 +138,8 @@ class Runner {
             return CellState::missing;
         for (const std::string& metric : matrix_.metrics)
             if (!row["metrics"].contains(metric)) return CellState::missing;
+        if (matrix_.stability && !holds_stability(row, cell, *matrix_.stability))
+            return CellState::missing;
         const bool same_program =
             row.value("build", nlohmann::json()) == build_ &&
             row.value("simd_width", nlohmann::json()) == simd_width_ &&
@@ -218,6 +199,7 @@ class Runner {
         settings.size = {64, 64};
         settings.reduction = 1;
         settings.spp = 64;
+        settings.camera_shift = {};
         const std::string key = frame_key(scene, settings);
         const auto known = rates_.find(key);
         if (known != rates_.end()) return known->second;
@@ -228,14 +210,8 @@ class Runner {
 
     double planned_samples(const std::vector<FrameJob>& jobs) const {
         double total = 0;
-        std::set<std::string> references;
-        for (const FrameJob& job : jobs) {
-            total += job.samples();
-            if (matrix_.reference_source != nullptr) continue;
-            const RenderSettings reference = reference_settings(matrix_, *job.cells.front());
-            const std::string key = frame_key(job.cells.front()->scene, reference);
-            if (references.insert(key).second) total += traced_samples(reference);
-        }
+        for (const PlannedRender& each : renders_of(jobs, matrix_))
+            total += traced_samples(each.settings);
         return total;
     }
 
@@ -279,18 +255,19 @@ class Runner {
         });
     }
 
+    MethodRender render_view(const Cell& view, const std::string& label) {
+        return with_progress(label, view.settings, [&](const Progress& progress) {
+            return render_frame(view, scenes_.at(view.scene), progress);
+        });
+    }
+
     MethodRender trace(const FrameJob& job) {
-        const Cell& first = *job.cells.front();
-        const Method& method =
-            first.kind == CellKind::method ? *first.render_method : all_methods().front();
-        const MethodRequest request{scenes_.at(first.scene), job.settings, first.method_parameters};
-        const auto trace_once = [&](const Progress& progress) {
-            return vecino::render(method, request, progress);
-        };
+        const Cell view = views_of(job, matrix_).front();
         std::vector<double> scene_s, trace_s, reconstruct_s;
         MethodRender result;
         for (int i = 0; i < matrix_.repeat; ++i) {
-            result = i == 0 ? with_progress(first.name, job.settings, trace_once) : trace_once({});
+            result =
+                i == 0 ? render_view(view, view.name) : render_frame(view, scenes_.at(view.scene));
             const RenderStatistics& s = result.render.statistics;
             scene_s.push_back(s.scene_s);
             trace_s.push_back(s.trace_s);
@@ -303,18 +280,46 @@ class Runner {
         return result;
     }
 
+    std::vector<ShiftedView> shifted_views(const FrameJob& job) {
+        std::vector<ShiftedView> shifted;
+        const std::vector<Cell> views = views_of(job, matrix_);
+        for (std::size_t i = 1; i < views.size(); ++i) {
+            const Image& reference = reference_of(views[i]).image;
+            MethodRender moved = render_view(views[i], views[i].name + ", camera moved");
+            shifted.push_back(
+                {matrix_.stability->shifts[i - 1], std::move(moved.render.frame), &reference});
+        }
+        return shifted;
+    }
+
     void run_job(const FrameJob& job) {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
-        CellInput input{&matrix_, nullptr, &reference_of(*job.cells.front())};
+        static const StoredReference none;
+        CellInput input{&matrix_, nullptr, &none};
+        try {
+            input.reference = &reference_of(*job.cells.front());
+        } catch (const WriteError&) {
+            throw;
+        } catch (const Error& error) {  // a file that is gone or broken: its cells alone fail
+            if (error.code() == ExitCode::interrupted) throw;
+            for (const Cell* cell : job.cells) add_row(*cell, none, failed_result(error.what()));
+            return;
+        }
         MethodRender traced;
+        std::optional<GuideStore> guides;
         if (job.traces) {
             traced = trace(job);
             input.traced = &traced;
+            input.scene = &scenes_.at(job.cells.front()->scene);
+            input.guides = &guides.emplace(*input.scene, job.settings, matrix_.repeat);
         }
-        for (const Cell* cell : job.cells) run_cell(*cell, input);
+        const std::vector<ShiftedView> shifted = shifted_views(job);
+        input.shifted = shifted;
+        for (const Cell* cell : job.cells)
+            add_row(*cell, *input.reference, cell_result(*cell, input, directory_));
     }
 
-    void run_cell(const Cell& cell, const CellInput& input) {
+    void add_row(const Cell& cell, const StoredReference& reference, const nlohmann::json& result) {
         nlohmann::json row{{"cell", cell.name},
                            {"group", cell.group},
                            {"against", cell.against},
@@ -324,15 +329,15 @@ class Runner {
                            {"params", cell.parameters_json()},
                            {"samples_ratio", cell.samples_ratio()},
                            {"reference", reference_json(matrix_, cell)},
-                           {"reference_file", input.reference->file},
-                           {"reference_error", input.reference->error},
+                           {"reference_file", reference.file},
+                           {"reference_error", reference.error},
                            {"scene_hash", scene_hashes_.at(cell.scene)},
                            {"image_hash", image_hash(matrix_, cell)},
                            {"reference_hash", reference_hash(matrix_, cell)},
                            {"build", build_},
                            {"simd_width", simd_width_},
                            {"host", run_["versions"]["cpu"]}};
-        row.update(cell_result(cell, input, directory_));
+        row.update(result);
         mark_limited(row);
         directory_.append(row);
         rows_[cell.name] = row;
@@ -349,10 +354,7 @@ class Runner {
     }
 
     void write_run() {
-        char date[32];
-        const std::time_t now = std::time(nullptr);
-        std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-        run_["finished_utc"] = date;
+        run_["finished_utc"] = utc_time();
         run_["command"] = "vecino run " + matrix_.file + " -o " + directory_.path();
         run_["cells"] = cells_.size();
         run_["seconds"] = before_.seconds + watch_.seconds();

@@ -130,6 +130,10 @@ GroupSummary summarise_group(const std::vector<const Json*>& all) {
     group.metrics = all_metrics_of(rows);
     group.region_psnr_float_db = region_metric(rows, "psnr_float_db");
     set_limits(group, rows.front()->value("reference_error", Json()));
+    if (const auto predicted = values_of(rows, "facts", "predicted_psnr_float_db");
+        !predicted.empty()) {
+        group.predicted_db = median(predicted);
+    }
     group.times_s = values_of(rows, "time_s", "total");
     group.time_s = median(group.times_s);
     group.reconstruct_s = median(values_of(rows, "time_s", "reconstruct"));
@@ -256,31 +260,34 @@ Json summary_json(const GroupSummary& g) {
         const auto& value = g.region_psnr_float_db[region_index(info.region)];
         regions[std::string(info.name)] = estimate_json(value);
     }
-    return {{"regions", regions},
-            {"metrics", metrics_json(g)},
-            {"noise_db", estimate_json(g.noise_db)},
-            {"bias_db", estimate_json(g.bias_db)},
-            {"relmse_noise", estimate_json(g.relmse_noise)},
-            {"relmse_bias", estimate_json(g.relmse_bias)},
-            {"reference_db", g.reference_db ? Json(*g.reference_db) : Json()},
-            {"limited_by_reference", flag_json(g.is_limited)},
-            {"limited_regions", limited_regions_json(g)},
-            {"group", g.group},
-            {"scene", g.scene},
-            {"method", g.method},
-            {"params", g.params},
-            {"seeds", g.seeds},
-            {"failed", g.failed},
-            {"psnr_float_db", estimate_json(g.psnr_float_db)},
-            {"psnr_db", estimate_json(g.psnr_db)},
-            {"ssim", estimate_json(g.ssim)},
-            {"relmse", estimate_json(g.relmse)},
-            {"time_s", g.time_s},
-            {"reconstruct_s", g.reconstruct_s},
-            {"time_share", g.time_share},
-            {"samples_ratio", g.samples_ratio},
-            {"fallback_pixels", g.fallback_pixels},
-            {"cells", g.cells}};
+    Json json{{"regions", regions},
+              {"metrics", metrics_json(g)},
+              {"noise_db", estimate_json(g.noise_db)},
+              {"bias_db", estimate_json(g.bias_db)},
+              {"relmse_noise", estimate_json(g.relmse_noise)},
+              {"relmse_bias", estimate_json(g.relmse_bias)},
+              {"reference_db", g.reference_db ? Json(*g.reference_db) : Json()},
+              {"predicted_psnr_float_db", g.predicted_db ? Json(*g.predicted_db) : Json()},
+              {"limited_by_reference", flag_json(g.is_limited)},
+              {"limited_regions", limited_regions_json(g)},
+              {"group", g.group},
+              {"scene", g.scene},
+              {"method", g.method},
+              {"params", g.params},
+              {"seeds", g.seeds},
+              {"failed", g.failed},
+              {"psnr_float_db", estimate_json(g.psnr_float_db)},
+              {"psnr_db", estimate_json(g.psnr_db)},
+              {"ssim", estimate_json(g.ssim)},
+              {"relmse", estimate_json(g.relmse)},
+              {"time_s", g.time_s},
+              {"reconstruct_s", g.reconstruct_s},
+              {"time_share", g.time_share},
+              {"samples_ratio", g.samples_ratio},
+              {"fallback_pixels", g.fallback_pixels},
+              {"cells", g.cells}};
+    if (g.stability) json["stability"] = group_stability_json(*g.stability);
+    return json;
 }
 
 std::string summary_table(const std::vector<GroupSummary>& groups) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "eval/seed_statistics.h"
+#include "eval/stability_summary.h"
 #include "eval/statistics.h"
 
 namespace vecino {
@@ -30,8 +31,9 @@ struct GroupSummary {
     std::optional<Estimate> noise_db, bias_db;  ///< parts of psnr_float_db's error, in its dB
     std::optional<Estimate> relmse_noise, relmse_bias;  ///< parts of relmse
     std::optional<double> reference_db;                 ///< the reference's own psnr_float_db
-    double reference_relmse = 0;     ///< its own relmse; 0 where that is not known
-    std::optional<bool> is_limited;  ///< by the reference (eval/reference_error.h)
+    std::optional<double> predicted_db;  ///< psnr_float_db that the method expected: median
+    double reference_relmse = 0;         ///< its own relmse; 0 where that is not known
+    std::optional<bool> is_limited;      ///< by the reference (eval/reference_error.h)
     PerRegion<std::optional<bool>> region_is_limited;
     double time_s = 0;            ///< total, median over seeds
     std::vector<double> times_s;  ///< total, by seed
@@ -43,6 +45,9 @@ struct GroupSummary {
     std::size_t fallback_pixels = 0;  ///< of the first seed
     std::size_t dropped_samples = 0;  ///< over all seeds
     std::optional<SeedStatisticsByRegion> statistics;
+    std::optional<GroupStability> stability;  ///< none: the matrix did not ask for it
+    /// Of the failure that the scene shows, by seed; at least a tenth of its pass_below.
+    std::vector<double> signature_by_seed;
     std::vector<std::string> cells;
 
     /// Of a region by name, or of the whole image (""). Null without finished images.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <chrono>
+#include <ctime>
 #include <fstream>
 #include <glm/detail/setup.hpp>
 #include <opencv2/core/version.hpp>
@@ -78,6 +80,15 @@ std::string version_text() {
            ", nlohmann-json " + text("nlohmann_json") + ", CLI11 " + text("cli11") +
            "\nSIMD width " + text("simd_width") + ", " + text("threads") + " threads, " +
            text("cpu");
+}
+
+std::string utc_time() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
 }
 
 }  // namespace vecino

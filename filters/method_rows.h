@@ -10,6 +10,8 @@
 
 namespace vecino {
 
+std::span<const MethodOption> auto_rows();
+MethodRender run_auto(const MethodRequest& request, const Progress& progress);
 std::span<const MethodOption> surface_records_rows();
 MethodRender run_surface_records(const MethodRequest& request, const Progress& progress);
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "filters/method_rows.h"
+#include "filters/plans.h"
 
 namespace vecino {
 namespace {
@@ -15,15 +16,27 @@ MethodRender trace_paths(const MethodRequest& request, const Progress& progress)
     return {.render = render(request.scene, request.settings, progress)};
 }
 
+constexpr std::string_view kInterleavedOptions[] = {
+    "interleaving", "mask", "kernel", "step", "weighting", "min_normal_cosine"};
+constexpr std::string_view kAdaptiveOptions[] = {"coarse_step", "tolerance", "correction",
+                                                 "min_normal_cosine"};
+constexpr std::string_view kReuseOptions[] = {"radius", "reused", "weighting", "min_normal_cosine"};
+constexpr std::string_view kVariationOptions[] = {"variation_rule", "variation_bound", "min_spp"};
 constexpr std::string_view kSurfaceRecordsOptions[] = {
-    "pilot_spp", "edge_spp", "cell", "levels", "record_paths", "refined_record_paths",
+    "pilot_spp", "edge_spp",  "cell", "levels", "record_paths", "refined_record_paths",
     "fit_sigma", "refine_tau"};
+constexpr std::string_view kAutoOptions[] = {"time_budget"};
 
 // clang-format off
 const Method kMethods[] = {
     {"path", {}, "path tracing of every pixel", trace_paths},
+    {"interleaved", kInterleavedOptions, "pixels of a lattice, others interpolated; or parts of one set of samples", render_interleaved},
+    {"adaptive", kAdaptiveOptions, "pixels between traced ones of their surface are traced where these disagree", render_adaptive},
+    {"reuse", kReuseOptions, "a pixel takes the colour of a traced one whose hit is near in space", render_reuse},
+    {"variation", kVariationOptions, "a pixel is sampled until its samples vary little, spp at most", render_variation},
     {"surface_records", kSurfaceRecordsOptions,
      "exact coverage and direct light, indirect light interpolated on surfaces", run_surface_records},
+    {"auto", kAutoOptions, "what a pilot says is best for the time", run_auto},
 };
 // clang-format on
 

@@ -3,12 +3,12 @@
 // The options of the schemes: the one table that the command line, matrices, cell names and help
 // follow from.
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/json_schema.h"
+#include "filters/option_names.h"
 #include "filters/schemes.h"
 
 namespace vecino {
@@ -17,11 +17,6 @@ namespace {
 constexpr IntegerKind kWindow{1, 9999};  // and odd
 constexpr std::string_view kWindowAllowed = "an odd integer from 1 to 9999";
 
-constexpr Named<Weighting> kWeightings[] = {
-    {"proportional", Weighting::proportional},
-    {"inverse", Weighting::inverse},
-    {"gaussian", Weighting::gaussian},
-};
 constexpr Named<Metric> kMetrics[] = {
     {"euclidean", Metric::euclidean},
     {"manhattan", Metric::manhattan},
@@ -31,6 +26,8 @@ constexpr ChoiceKind kWeighting{kWeightings};
 constexpr ChoiceKind kMetric{kMetrics};
 constexpr RealKind kCosine{{-1.0, 1.0}};
 constexpr BooleanKind kSwitch{};
+constexpr IntegerKind kOrder{0, 2};
+constexpr IntegerKind kGuideScale{1, 16};
 
 void set_window(SchemeParameters& parameters, const JsonValue& json) {
     const int window = kWindow.read(json);
@@ -51,17 +48,17 @@ std::string window_slug(const SchemeParameters& parameters) {
     return slug;
 }
 
-/// "c0.95": the fewest digits that read back as the same number.
 std::string cosine_slug(const SchemeParameters& parameters) {
-    char digits[32];
-    const auto [end, error] =
-        std::to_chars(std::begin(digits), std::end(digits), parameters.min_normal_cosine);
-    std::string slug = "c";
-    slug.append(digits, end);
-    return slug;
+    return number_slug("c", parameters.min_normal_cosine);
 }
 
 using Parameters = SchemeParameters;
+
+/// "o2" or "g4": a letter and a number.
+template <char kLetter, int Parameters::*kMember>
+std::string number_slug(const Parameters& parameters) {
+    return kLetter + std::to_string(parameters.*kMember);
+}
 
 const SchemeOption kOptions[] = {
     {"window", "--window", kWindowAllowed, "side of the neighbourhood, in low-resolution pixels",
@@ -80,6 +77,12 @@ const SchemeOption kOptions[] = {
      "whether a pixel counts among its own neighbours", read_into<kSwitch, &Parameters::use_centre>,
      [](const Parameters& p) { return std::string(p.use_centre ? "centre" : "no_centre"); },
      schema_of<kSwitch>},
+    {"order", "--order", "0, 1, 2", "highest order of the polynomials that are fitted",
+     read_into<kOrder, &Parameters::order>, number_slug<'o', &Parameters::order>,
+     schema_of<kOrder>},
+    {"guide_scale", "", "1 to 16", "samples of the guide per pixel, along each axis",
+     read_into<kGuideScale, &Parameters::guide_scale>, number_slug<'g', &Parameters::guide_scale>,
+     schema_of<kGuideScale>},
 };
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "filters/guide.h"
+#include "filters/guided.h"
 #include "filters/window.h"
 
 namespace vecino {
@@ -70,6 +72,9 @@ constexpr std::string_view kDistance3dOptions[] = {"window", "weighting", "use_c
 constexpr std::string_view kNormalOptions[] = {"window", "weighting", "min_normal_cosine",
                                                "use_centre"};
 
+constexpr std::string_view kBilateralOptions[] = {"window", "guide_scale"};
+constexpr std::string_view kFitOptions[] = {"window", "order", "guide_scale"};
+
 // clang-format off
 const Scheme kSchemes[] = {
     {"nearest", {}, {},
@@ -82,6 +87,12 @@ const Scheme kSchemes[] = {
      "an average weighted by distance between first hits", run_distance3d<WindowDistance::world>},
     {"distance3d_normal", {Plane::position, Plane::normal}, kNormalOptions,
      "the same, among neighbours of similar normal", run_distance3d<WindowDistance::gated_world>},
+    {"joint_bilateral", {}, kBilateralOptions,
+     "an average of neighbours on the surface that a guide shows there", nullptr,
+     joint_bilateral, kGuidePlanes, {Plane::emission}, {.window = 5}},
+    {"guided_fit", {}, kFitOptions,
+     "a polynomial fitted to the irradiance of that surface, times the guide's albedo", nullptr,
+     guided_fit, kGuidePlanes, {Plane::emission}, {.window = 7}},
 };
 // clang-format on
 
@@ -156,7 +167,8 @@ void require_planes(const Scheme& scheme, const Frame& low, const std::string& f
     for (const PlaneInfo& plane : all_planes()) {
         const Extent size = size_of(low, plane);
         // Ids need not be there, but where they are, the 3D schemes look for misses in them.
-        const bool optional = plane.plane == Plane::id && size.area() > 0;
+        const bool is_read = plane.plane == Plane::id || scheme.may_read.has(plane.plane);
+        const bool optional = is_read && size.area() > 0;
         if (!scheme.needs.has(plane.plane) && !optional) continue;
         if (size.area() == 0) {
             missing.push_back(plane.name);
@@ -177,6 +189,13 @@ Reconstruction reconstruct(const Frame& low, const Scheme& scheme,
     require_planes(scheme, low, "low-resolution frame");
     require_memory(bytes_of({Plane::radiance}, request.size),
                    "image of " + to_string(request.size));
+    if (scheme.uses_guide()) {
+        if (request.guide == nullptr)
+            throw Error(ExitCode::usage, "scheme " + quoted(scheme.name) +
+                                             ": found no guide, allowed: with one (--guide)");
+        require_guide(*request.guide, request.size, "guide");
+        return scheme.run_guided({low, *request.guide, request});
+    }
     Reconstruction result = scheme.run(low, request.parameters, request.threads);
     result.image = replicate(result.image, request.size, request.threads);
     return result;

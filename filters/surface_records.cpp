@@ -5,8 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>  // DEV
-#include <ctime>    // DEV
 #include <mutex>
 #include <string>
 
@@ -78,12 +76,9 @@ class Band {
 
     void run(StagedRender& out, const std::function<void()>& checkpoint) {
         const auto timed = [&](double& seconds, const auto& stage) {
-            static const bool cpu = getenv("SRCPU");                          // DEV
-            const double c0 = static_cast<double>(clock()) / CLOCKS_PER_SEC;  // DEV
             const Stopwatch watch;
             stage();
-            seconds +=
-                cpu ? static_cast<double>(clock()) / CLOCKS_PER_SEC - c0 : watch.seconds();  // DEV
+            seconds += watch.seconds();
             checkpoint();
         };
         RenderStatistics& statistics = out.render.statistics;
@@ -168,7 +163,7 @@ class Band {
                     list);
                 if (list.crowded) {
                     rays += trace_paths(pixel, y);
-                    samples += pixel.samples;
+                    samples += crowded_samples(pixel);
                     continue;
                 }
                 samples += pixel.samples - pilot;
@@ -181,15 +176,21 @@ class Band {
         statistics.samples += samples;
     }
 
+    /// What is known of a crowded pixel is not all: it needs more samples than its clusters say.
+    [[nodiscard]] std::uint32_t crowded_samples(const NeedyPixel& pixel) const {
+        constexpr std::uint32_t kMore = 8;
+        return std::max(pixel.samples, kMore * static_cast<std::uint32_t>(context_.plan.edge_spp));
+    }
+
     /// A crowded pixel by plain paths.
     std::uint64_t trace_paths(const NeedyPixel& pixel, int y) {
+        const std::uint32_t paths = crowded_samples(pixel);
         std::uint64_t rays = 0;
         PixelAccumulator sums(VarianceOf::nothing);
         SampleBlock block;
-        for (std::uint32_t at = 0; at < pixel.samples; at += kBlockSamples) {
-            const int count = std::min(kBlockSamples, static_cast<int>(pixel.samples - at));
-            rays += context_.kernel.trace_samples(tracer_.task, {pixel.x, y, at, count}, block,
-                                                  {nullptr, nullptr});
+        for (std::uint32_t at = 0; at < paths; at += kBlockSamples) {
+            const int count = std::min(kBlockSamples, static_cast<int>(paths - at));
+            rays += context_.kernel.trace_samples(tracer_.task, {pixel.x, y, at, count}, block, {});
             sums.add(block, count);
         }
         std::array<ExactSum::Digits, kMostSums> digits;
@@ -285,7 +286,7 @@ StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings
     statistics.threads = settings.threads > 0 ? settings.threads : default_thread_count();
     statistics.simd_width = kernel.width;
     if (scene.pattern != Pattern::none) {
-        fill_pattern(out.render.frame);
+        fill_pattern(out.render.frame, size);
         return out;
     }
     const Stopwatch scene_watch;

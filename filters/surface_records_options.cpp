@@ -146,14 +146,10 @@ MethodRender run_surface_records(const MethodRequest& request, const Progress& p
                  {"fit_sigma", plan.fit_sigma},
                  {"refine_tau", plan.refine_tau},
                  {"needy_pixels", staged.counts.needy_pixels},
-                 {"records", staged.counts.records},
-                 {"stage_s",
-                  {{"pilot", times.pilot_s},
-                   {"records", times.records_s},
-                   {"fit", times.fit_s},
-                   {"needs", times.needs_s},
-                   {"samples", times.samples_s},
-                   {"resolve", times.resolve_s}}}};
+                 {"records", staged.counts.records}};
+    out.stage_s = {{"pilot", times.pilot_s},     {"records", times.records_s},
+                   {"fit", times.fit_s},         {"needs", times.needs_s},
+                   {"samples", times.samples_s}, {"resolve", times.resolve_s}};
     return out;
 }
 

@@ -90,6 +90,13 @@ inline std::vector<SchemeParameters> parameters_of(const Scheme& scheme, int win
     const auto choices = [&](const char* option, int count) {
         return scheme.reads(option) ? count : 1;
     };
+    for (int order = 0; order < choices("order", 3); ++order) {
+        SchemeParameters parameters = scheme.defaults;
+        parameters.window = window;
+        parameters.order = order;
+        if (scheme.uses_guide()) all.push_back(parameters);
+    }
+    if (scheme.uses_guide()) return all;
     for (int weighting = 0; weighting < choices("weighting", 3); ++weighting) {
         for (int metric = 0; metric < choices("metric", 2); ++metric) {
             for (int centre = 0; centre < choices("use_centre", 2); ++centre) {
@@ -114,9 +121,30 @@ inline std::string cell_name(const Scheme& scheme, const SchemeParameters& param
     return name;
 }
 
+/// A guide that shows in every pixel what the corresponding low-res pixel shows.
+inline Frame replicated_guide(const Frame& low, Extent size) {
+    Frame guide;
+    guide.position_world = Grid<glm::vec3>(size);
+    guide.normal_world = Grid<glm::vec3>(size);
+    guide.object_id = Grid<std::int32_t>(size);
+    for (int y = 0; y < size.height; ++y) {
+        const int v = corresponding(y, size.height, low.size().height);
+        for (int x = 0; x < size.width; ++x) {
+            const int u = corresponding(x, size.width, low.size().width);
+            guide.position_world(x, y) = low.position_world(u, v);
+            guide.normal_world(x, y) = low.normal_world(u, v);
+            guide.object_id(x, y) = low.object_id(u, v);
+        }
+    }
+    return guide;
+}
+
+/// Schemes that take a guide get one of the frame's own planes, where size is a sound one.
 inline Reconstruction rebuild(const Frame& low, const Scheme& scheme,
-                              const SchemeParameters& parameters, Extent size) {
-    return reconstruct(low, scheme, {size, parameters, 1});
+                              const SchemeParameters& parameters, Extent size, int threads = 1) {
+    if (!scheme.uses_guide()) return reconstruct(low, scheme, {size, parameters, threads});
+    const Frame guide = replicated_guide(low, size);
+    return reconstruct(low, scheme, {size, parameters, threads, &guide});
 }
 
 inline bool same_bits(const Image& a, const Image& b) {

@@ -63,6 +63,25 @@ TEST_CASE("a faulty matrix is refused: where, what was found, what is allowed", 
     check_success(dir, "run sound.json -o out --only path.s1");
 }
 
+TEST_CASE("a faulty failure is refused: where, what was found, what is allowed", "[bad_input]") {
+    const TempDir dir;
+    const json faulty = table("faulty_failures.json");
+    dir.write("scene.json", table("faulty_scenes.json").at("sound").dump());
+    json matrix{
+        {"name", "m"}, {"axes", {{"scheme", "nearest"}, {"seed", 1}}}, {"reference", {{"spp", 1}}}};
+    auto mistakes = write_faults(dir, faulty, "", "");
+    for (Mistake& mistake : mistakes) {
+        matrix["failures"] = {mistake.line};
+        dir.write("of-" + mistake.line, matrix.dump());
+        mistake.line = "run of-" + mistake.line + " -o out";
+    }
+    check_mistakes(dir, mistakes);
+    dir.write("sound.failure.json", faulty.at("sound").dump());
+    matrix["failures"] = {"sound.failure.json"};
+    dir.write("sound.json", matrix.dump());
+    check_success(dir, "run sound.json -o out --dry-run");
+}
+
 TEST_CASE("a file that is no JSON is refused with line, column and reason", "[bad_input]") {
     const TempDir dir;
     dir.write("empty.json", "");

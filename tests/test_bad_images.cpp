@@ -56,7 +56,7 @@ TEST_CASE("mistakes of upsample", "[bad_input]") {
         {"no output", "upsample rgb.exr --size 16x16 --scheme mean", 64, "-o is required"},
         {"no input", "upsample", 64, "required"},
         {"an unknown scheme", "upsample rgb.exr" + to + "bicubic", 64, "scheme: found \"bicubic\", allowed: nearest, mean, "},
-        {"an unknown flag", "upsample rgb.exr" + to + "mean --guide rgb.exr", 64, "--guide"},
+        {"an unknown flag", "upsample rgb.exr" + to + "mean --guides rgb.exr", 64, "--guides"},
         {"a flag of render", "upsample rgb.exr" + to + "mean --spp 4", 64, "--spp"},
         {"a doubled flag", "upsample rgb.exr" + to + "mean --window 3 --window 5", 64, "--window"},
         {"two inputs", "upsample rgb.exr tall.exr" + to + "mean", 64, "tall.exr"},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // vecino render --samples and vecino merge as a script sees them, mistakes included.
+#include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -55,8 +57,9 @@ void make_parts(const TempDir& dir) {
 
 /// A copy of a part with something changed.
 template <class Change>
-void write_changed(const TempDir& dir, const std::string& name, const Change& change) {
-    ChannelFile file = load_channels(dir.path("b.exr"));
+void write_changed(const TempDir& dir, const std::string& name, const Change& change,
+                   const std::string& from = "b.exr") {
+    ChannelFile file = load_channels(dir.path(from));
     change(file);
     std::vector<ChannelSource> sources;
     for (const Channel& channel : file.channels) {
@@ -123,6 +126,11 @@ TEST_CASE("mistakes of merge and of samples", "[merge][bad_input]") {
     write_changed(dir, "rays.exr", [](ChannelFile& file) { file.metadata["rays"] = "many"; });
     write_changed(dir, "plane.exr", [](ChannelFile& file) { file.metadata["planes"] = "radiance,colour"; });
     write_changed(dir, "no_hits.exr", [](ChannelFile& file) { file.metadata["samples"] = "0:64"; });
+    const auto set_id = [](float id) {
+        return [id](ChannelFile& file) { std::ranges::find(file.channels, "Id", &Channel::name)->values[3] = id; };
+    };
+    write_changed(dir, "nan_id.exr", set_id(std::numeric_limits<float>::quiet_NaN()), "a.exr");
+    write_changed(dir, "large_id.exr", set_id(1e20f), "a.exr");
     const std::string render = render_line("-o o.exr --samples ");
     const std::string as_in_a = ", as in a.exr";
     const Mistake mistakes[] = {
@@ -155,6 +163,8 @@ TEST_CASE("mistakes of merge and of samples", "[merge][bad_input]") {
         {"a folder that is not there", "merge a.exr b.exr c.exr -o none/m.exr", 4, "none/m.exr: cannot be written: none: "},
         {"a digit that is none", "merge a.exr half.exr c.exr -o m.exr", 4, "half.exr: cannot be read: channel "},
         {"a channel that is none", "merge a.exr unknown.exr c.exr -o m.exr", 4, "unknown.exr: cannot be read: channel Sum.Blue.3 is none of a part"},
+        {"an id that is no number", "merge nan_id.exr b.exr c.exr -o m.exr", 4, "nan_id.exr: cannot be read: channel Id does not hold 32-bit integers"},
+        {"an id beyond 32 bits", "merge large_id.exr b.exr c.exr -o m.exr", 4, "large_id.exr: cannot be read: channel Id does not hold 32-bit integers"},
         {"no samples that a render has", "merge a.exr odd.exr -o m.exr", 4, "odd.exr: cannot be read: attribute samples is \"64:100\""},
         {"no number of samples", "merge a.exr no_spp.exr -o m.exr", 4, "no_spp.exr: cannot be read: attribute spp is missing or damaged"},
         {"a damaged count", "merge a.exr rays.exr -o m.exr", 4, "rays.exr: cannot be read: attribute rays is \"many\""},

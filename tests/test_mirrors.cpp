@@ -110,8 +110,7 @@ TEST_CASE("a furnace with walls of mirrors holds Le (1 + a + ... + a^d)", "[mirr
     settings.max_depth = depth;
     settings.light_sampling = LightSampling::none;
     const Image image = render(scene, settings).frame.radiance;
-    for (const glm::vec3& value : image.values())
-        CHECK(value.x == Approx(expected).epsilon(1e-5));
+    for (const glm::vec3& value : image.values()) CHECK(value.x == Approx(expected).epsilon(1e-5));
     settings.light_sampling = LightSampling::nee;
     const double tolerance = all_mirrors ? 1e-5 : 0.01;  // next-event estimation has noise
     CHECK(mean_radiance(scene, settings).x == Approx(expected).epsilon(tolerance));

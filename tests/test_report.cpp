@@ -110,19 +110,15 @@ TEST_CASE("the data in a report are JSON with a record of every group", "[report
     CHECK(data["methods"].size() == 4);
 }
 
-TEST_CASE("methods differ in shape and in colour", "[report]") {
+TEST_CASE("methods differ in shape or in colour", "[report]") {
     const nlohmann::json data = embedded_data(
         page_of({result_row("path", 1), result_row("nearest", 1), result_row("mean", 1),
                  result_row("distance2d", 1), result_row("distance3d", 1),
                  result_row("distance3d_normal", 1), result_row("of_tomorrow", 1)}));
-    std::set<std::string> shapes;
-    std::set<int> colours;
-    for (const nlohmann::json& method : data["methods"]) {
-        shapes.insert(method["shape"].get<std::string>());
-        colours.insert(method["colour"].get<int>());
-    }
-    CHECK(shapes.size() == 7);
-    CHECK(colours.size() == 7);
+    std::set<std::pair<std::string, int>> looks;
+    for (const nlohmann::json& method : data["methods"])
+        looks.emplace(method["shape"].get<std::string>(), method["colour"].get<int>());
+    CHECK(looks.size() == 7);
 }
 
 TEST_CASE("a report loads nothing from outside of its file", "[report]") {

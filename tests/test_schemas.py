@@ -44,7 +44,8 @@ def check(kind, files, faulty):
     jsonschema.Draft7Validator.check_schema(schema)
     validator = jsonschema.Draft7Validator(schema)
     table = json.loads((SOURCE / "tests/data" / faulty).read_text())
-    paths = [path for path in sorted(SOURCE.glob(files)) if not path.match("*.schema.json")]
+    others = ["*.schema.json"] + ([] if kind == "failure" else ["*.failure.json"])
+    paths = [path for path in sorted(SOURCE.glob(files)) if not any(path.match(other) for other in others)]
     documents = [(str(path), json.loads(path.read_text()), True) for path in paths]
     documents.append((f"{faulty}: sound", table["sound"], True))
     for fault in table["faults"]:
@@ -58,6 +59,7 @@ def main():
     for kind, files, faulty in (
         ("scene", "scenes/**/*.json", "faulty_scenes.json"),
         ("matrix", "configs/*.json", "faulty_matrices.json"),
+        ("failure", "scenes/failures/*.failure.json", "faulty_failures.json"),
     ):
         right, wrong = check(kind, files, faulty)
         print(f"{kind}: {right} documents judged rightly, {len(wrong)} wrongly")

@@ -144,6 +144,8 @@ TEST_CASE("no value leaves the range of its window", "[schemes]") {
     for (glm::vec3& color : low.radiance.values()) color = 1.0e3f * (color - 0.5f);
     const int window = GENERATE(3, 7, 9);
     for_each_cell(window, [&](const Scheme& scheme, const SchemeParameters& parameters) {
+        // A polynomial may go on beyond its samples, see test_guided.cpp.
+        if (scheme.reads("order") && parameters.order > 0) return;
         const Image values = rebuild(low, scheme, parameters, low.size()).image;
         int outside = 0;
         for (int y = 0; y < low.size().height; ++y) {
@@ -203,7 +205,7 @@ TEST_CASE("the number of threads does not change a bit", "[schemes]") {
     const Frame low = random_frame({50, 61}, FrameContent::awkward);
     for_each_cell(5, [&](const Scheme& scheme, const SchemeParameters& parameters) {
         const auto with = [&](int threads) {
-            return reconstruct(low, scheme, {{128, 140}, parameters, threads});
+            return rebuild(low, scheme, parameters, {128, 140}, threads);
         };
         const Reconstruction one = with(1);
         for (const int threads : {2, 7}) {

@@ -35,6 +35,7 @@ void check_against_reference(const Frame& low, const Scheme& scheme,
 
 void check_all(const Frame& low, int window, Extent size) {
     for (const Scheme& scheme : all_schemes()) {
+        if (scheme.uses_guide()) continue;  // not the thesis's
         for (const SchemeParameters& parameters : parameters_of(scheme, window)) {
             check_against_reference(low, scheme, parameters, size);
         }
@@ -70,6 +71,7 @@ TEST_CASE("the normal gate agrees with the thesis's at any cosine", "[schemes]")
     const float cosine = GENERATE(-1.0f, -0.5f, 0.0f, 0.9f, 0.99f, 1.0f);
     const Frame low = random_frame({19, 17}, FrameContent::awkward, 6);
     for (const Scheme& scheme : all_schemes()) {
+        if (scheme.uses_guide()) continue;  // not the thesis's
         if (!scheme.reads("min_normal_cosine")) continue;
         for (SchemeParameters parameters : parameters_of(scheme, 7)) {
             parameters.min_normal_cosine = cosine;
@@ -85,6 +87,7 @@ TEST_CASE("values made once per low-res pixel equal those made per pixel, bit fo
     const Frame low = random_frame({32, 16}, FrameContent::awkward, 7);
     const Extent size{75, 41};
     for (const Scheme& scheme : all_schemes()) {
+        if (scheme.uses_guide()) continue;  // not the thesis's
         for (const SchemeParameters& parameters : parameters_of(scheme, 7)) {
             if (parameters.weighting == Weighting::gaussian) continue;
             INFO(cell_name(scheme, parameters));
@@ -100,6 +103,7 @@ TEST_CASE("every full-res pixel holds the very value of its corresponding low-re
     const Frame low = random_frame({21, 10}, FrameContent::awkward, 8);
     const Extent size{64, 31};
     for (const Scheme& scheme : all_schemes()) {
+        if (scheme.uses_guide()) continue;  // not the thesis's
         for (const SchemeParameters& parameters : parameters_of(scheme, 5)) {
             INFO(cell_name(scheme, parameters));
             const Image values = scheme.run(low, parameters, 1).image;

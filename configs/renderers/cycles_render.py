@@ -4,7 +4,8 @@
 
 Needs: pip install bpy (the wheel asks for one version of Python; see PyPI). Cycles' own sampler, box filter, no clamping, no denoising.
 Spheres are meshes of 256 x 128 faces. Blender writes the time of rendering alone, without its start, into the image: the attribute
-"cycles.ViewLayer.render_time".
+"cycles.ViewLayer.render_time". --planes emission adds the light that is seen directly, as a multilayer file; --planes guide writes that and
+the first hits through the pixel centres, of one sample: what `vecino upsample --guide` reads.
 """
 import argparse
 import json
@@ -60,6 +61,7 @@ def add_objects(scene):
             mesh.from_pydata(positions, [], faces)
             item = bpy.data.objects.new(str(number), mesh)
             bpy.context.collection.objects.link(item)
+        item.pass_index = number + 1
         item.data.materials.append(materials[thing["material"]])
 
 
@@ -77,6 +79,24 @@ def add_camera(camera):
     bpy.context.scene.camera = item
 
 
+def add_passes(render, planes):
+    layer = bpy.context.view_layer
+    layer.use_pass_emit = layer.use_pass_environment = True
+    if hasattr(render.image_settings, "media_type"):  # Blender 5
+        render.image_settings.media_type = "MULTI_LAYER_IMAGE"
+    render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+    render.image_settings.color_depth = "32"
+    if planes == "emission":
+        return
+    layer.use_pass_z = layer.use_pass_position = layer.use_pass_normal = True
+    layer.use_pass_diffuse_color = layer.use_pass_object_index = True
+    cycles = bpy.context.scene.cycles
+    cycles.samples = 1
+    cycles.max_bounces = 0
+    cycles.pixel_filter_type = "BLACKMAN_HARRIS"
+    cycles.filter_width = 0.01  # as good as the middle of the pixel
+
+
 def set_up(scene, arguments):
     render, cycles = bpy.context.scene.render, bpy.context.scene.cycles
     render.engine = "CYCLES"
@@ -92,6 +112,8 @@ def set_up(scene, arguments):
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.max_bounces = cycles.diffuse_bounces = arguments.max_depth - 1
     cycles.blur_glossy = 0
+    if arguments.planes != "none":
+        add_passes(render, arguments.planes)
     world = bpy.data.worlds.new("world")
     world.use_nodes = True
     background = world.node_tree.nodes["Background"]
@@ -107,6 +129,7 @@ def main():
     parser.add_argument("--spp", type=int, required=True)
     parser.add_argument("--max-depth", type=int, required=True)
     parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--planes", choices=["none", "emission", "guide"], default="none")
     arguments = parser.parse_args()
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = json.loads(pathlib.Path(arguments.scene).read_text())

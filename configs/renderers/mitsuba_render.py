@@ -4,7 +4,8 @@
 
 Needs: pip install mitsuba numpy; LLVM (Debian: libllvm19). Path tracing with multiple importance sampling, independent samples, box
 filter. The attribute "seconds" of the image tells the time of rendering alone: without Python's start, and without compiling the
-kernel, which a render of another seed does first.
+kernel, which a render of another seed does first. --planes emission adds the light that is seen directly, --planes guide writes that and
+the first hits through the pixel centres, and no other light: what `vecino upsample --guide` reads.
 """
 import argparse
 import json
@@ -53,13 +54,23 @@ def shapes_of(scene, folder):
 def load(scene, arguments, folder):
     camera = scene["camera"]
     width, height = arguments.size
+    paths = {"type": "path", "max_depth": arguments.max_depth + 1, "rr_depth": 1000}
+    emission = {"type": "path", "max_depth": 1}
+    guide = "position:position,nn:geo_normal,albedo:albedo,shape_index:shape_index,dd.y:depth"
+    integrators = {
+        "none": paths,
+        "emission": {"type": "aov", "aovs": "dd.y:depth", "image": paths, "emission": emission},
+        "guide": {"type": "aov", "aovs": guide, "emission": emission},
+    }
+    # One sample per pixel, in its middle.
+    centre = {"type": "stratified", "sample_count": 1, "jitter": False}
     return mi.load_dict({
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": arguments.max_depth + 1, "rr_depth": 1000},
+        "integrator": integrators[arguments.planes],
         "sensor": {
             "type": "perspective", "fov": camera["vertical_fov_degrees"], "fov_axis": "y",
             "to_world": mi.ScalarTransform4f().look_at(origin=camera["position"], target=camera["look_at"], up=camera["up"]),
-            "sampler": {"type": "independent"},
+            "sampler": centre if arguments.planes == "guide" else {"type": "independent"},
             "film": {"type": "hdrfilm", "width": width, "height": height, "rfilter": {"type": "box"}, "pixel_format": "rgb"},
         },
         **dict(shapes_of(scene, folder)),
@@ -74,7 +85,10 @@ def main():
     parser.add_argument("--spp", type=int, required=True)
     parser.add_argument("--max-depth", type=int, required=True)
     parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--planes", choices=["none", "emission", "guide"], default="none")
     arguments = parser.parse_args()
+    if arguments.planes == "guide":
+        arguments.spp = 1
     mi.set_variant("llvm_ad_rgb")
     with tempfile.TemporaryDirectory() as folder:
         scene = load(json.loads(pathlib.Path(arguments.scene).read_text()), arguments, pathlib.Path(folder))
@@ -82,7 +96,7 @@ def main():
         start = time.perf_counter()
         image = np.array(mi.render(scene, spp=arguments.spp, seed=arguments.seed))
         seconds = time.perf_counter() - start
-    bitmap = mi.Bitmap(image)
+        bitmap = mi.Bitmap(image) if arguments.planes == "none" else scene.sensors()[0].film().bitmap()
     bitmap.metadata()["seconds"] = seconds
     bitmap.write(arguments.output)
 

@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/auto_pilot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/color.h"
+#include "core/timing.h"
+#include "filters/surface_records_stages.h"
+
+namespace vecino {
+namespace {
+
+constexpr double kLeastPixels = 3600;
+constexpr int kFewSpp = 4, kManySpp = 16;  ///< for a packet of 16 lanes all the same
+
+// Offsets of the seed: no pilot frame shares its points with another or with the final frame.
+constexpr std::uint32_t kSeedA = 0x5bd1e995u, kSeedB = 0x27d4eb2fu;
+
+// ---------------------------------------------------------------- errors of images
+
+/// A mean over pixels and how far it may be off.
+struct MeanError {
+    double mean = 0;
+    double standard_error = 0;
+};
+
+template <class Value>
+MeanError mean_over(const Image& image, const Value& value) {
+    double sum = 0, squares = 0;
+    const Extent size = image.size();
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+            const double each = value(x, y);
+            if (!std::isfinite(each)) continue;
+            sum += each;
+            squares += each * each;
+        }
+    }
+    const auto count = static_cast<double>(size.area());
+    const double mean = sum / count;
+    return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
+}
+
+/// Mean squared difference of sRGB values.
+MeanError difference(const Image& a, const Image& b) {
+    return mean_over(a, [&](int x, int y) {
+        double sum = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double d = static_cast<double>(srgb_encode(a(x, y)[c]) - srgb_encode(b(x, y)[c]));
+            sum += d * d;
+        }
+        return sum / 3;
+    });
+}
+
+/// How fast sRGB values change with linear ones; not at all where they are clipped.
+double srgb_slope(float linear) {
+    if (linear > 1.0f) return 0;
+    if (linear <= 0.0031308f) return 12.92;
+    return 0.4395833 * std::pow(static_cast<double>(linear), -0.5833333);
+}
+
+/// Mean squared error of an image against the truth that two independent, unbiased images are
+/// noisy forms of: the product of both differences has no noise in its mean.
+MeanError error_against(const Image& image, const Image& a, const Image& b) {
+    return mean_over(image, [&](int x, int y) {
+        double sum = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double slope = srgb_slope(image(x, y)[c]);
+            const auto value = static_cast<double>(image(x, y)[c]);
+            sum += slope * slope * (value - static_cast<double>(a(x, y)[c])) *
+                   (value - static_cast<double>(b(x, y)[c]));
+        }
+        return sum / 3;
+    });
+}
+
+// ---------------------------------------------------------------- frames
+
+struct PathFrame {
+    Image radiance;
+    double seconds = 0;
+    double rays_per_path = 0;
+    int lanes = 1;
+};
+
+class PilotFrames {
+  public:
+    PilotFrames(const Scene& scene, const RenderSettings& settings, const Progress& progress)
+        : scene_(scene), settings_(settings) {
+        settings_.planes = Planes{Plane::radiance};
+        if (progress) progress_ = [&progress](double) { return progress(0); };
+    }
+
+    [[nodiscard]] Extent size(int reduction) const {
+        return reduced(settings_.size, settings_.reduction * reduction);
+    }
+    [[nodiscard]] double pixels(int reduction) const {
+        return static_cast<double>(size(reduction).area());
+    }
+    [[nodiscard]] double scene_s() const { return scene_s_; }
+    /// The same, and counts anew.
+    double take_scene_s() { return std::exchange(scene_s_, 0.0); }
+    [[nodiscard]] const RenderSettings& settings() const { return settings_; }
+
+    PathFrame path(int reduction, int spp, std::uint32_t seed) {
+        RenderSettings settings = reduced_settings(reduction, seed);
+        settings.spp = spp;
+        Render made = render(scene_, settings, progress_);
+        scene_s_ += made.statistics.scene_s;
+        const auto paths = static_cast<double>(std::max<std::uint64_t>(made.statistics.samples, 1));
+        return {std::move(made.frame.radiance), made.statistics.trace_s,
+                static_cast<double>(made.statistics.rays) / paths, made.statistics.simd_width};
+    }
+
+    StagedRender records(int reduction, const SurfaceRecordsPlan& plan, std::uint32_t seed) {
+        StagedRender made =
+            render_in_stages(scene_, reduced_settings(reduction, seed), plan, progress_);
+        scene_s_ += made.render.statistics.scene_s;
+        return made;
+    }
+
+  private:
+    [[nodiscard]] RenderSettings reduced_settings(int reduction, std::uint32_t seed) const {
+        RenderSettings settings = settings_;
+        settings.reduction *= reduction;
+        settings.seed = settings_.seed + seed;
+        return settings;
+    }
+
+    const Scene& scene_;
+    RenderSettings settings_;
+    Progress progress_;
+    double scene_s_ = 0;
+};
+
+/// Cells at the pilot's resolution that stand for cells of so many pixels of the whole frame.
+SurfaceRecordsPlan pilot_plan(int cell, int reduction) {
+    return {4, 64, std::max(cell / reduction, 1), 0, 16, 16, 0.85, 0.15};
+}
+
+// ---------------------------------------------------------------- what they say
+
+double share(double seconds, double work) {
+    return work > 0 ? seconds / work : 0;
+}
+
+/// Rates of surface_records from the stages of one frame. The offsets are those of the cost model.
+CostRates rates_of(const StagedRender& made, const SurfaceRecordsPlan& plan, double pixels) {
+    const StageTimes& t = made.times;
+    const auto records = static_cast<double>(made.counts.records);
+    const auto needy = static_cast<double>(made.counts.needy_pixels);
+    CostRates rates{};
+    rates.first_sample_s = share(t.pilot_s, pixels * (plan.pilot_spp + kPilotStart));
+    rates.pixel_s = share(t.needs_s + t.resolve_s, pixels);
+    rates.edge_sample_s = share(t.samples_s, needy * (plan.edge_spp + kEdgeStart));
+    rates.record_path_s = share(t.records_s, records * (plan.record_paths + kRecordStart));
+    rates.record_s = share(t.fit_s, records);
+    return rates;
+}
+
+/// Of two measurements the quicker, which less else came between.
+CostRates quicker(const CostRates& a, const CostRates& b) {
+    return {std::min(a.path_sample_s, b.path_sample_s),
+            std::min(a.first_sample_s, b.first_sample_s),
+            std::min(a.pixel_s, b.pixel_s),
+            std::min(a.edge_sample_s, b.edge_sample_s),
+            std::min(a.record_path_s, b.record_path_s),
+            std::min(a.record_s, b.record_s)};
+}
+
+class PilotRun {
+  public:
+    PilotRun(PilotFrames& frames, std::optional<double> budget_s)
+        : frames_(frames), budget_s_(budget_s) {
+        pilot_.found.pixels = frames.pixels(1);
+        pilot_.found.has_records_method = frames.settings().light_sampling == LightSampling::nee;
+        while (frames.pixels(pilot_.reduction) > look_pixels()) ++pilot_.reduction;
+    }
+
+    Pilot run() {
+        (void)frames_.path(pilot_.reduction, 1, kSeedA);  // threads start, memory is touched
+        const double start_s = watch_.seconds();          // no part of any budget
+        watch_ = {};
+        (void)frames_.take_scene_s();
+        look();
+        const int reduction = affordable_reduction();
+        if (reduction > 0) {
+            const int first = pilot_.reduction;
+            pilot_.reduction = reduction;
+            measure_path();
+            if (pilot_.found.has_records_method) measure_records(first);
+        }
+        if (!budget_s_) pilot_.rates = nominal_rates(rays_per_path_);
+        pilot_.spent_s = spent_s();
+        pilot_.scene_s = frames_.scene_s() + start_s;
+        return pilot_;
+    }
+
+  private:
+    /// Of the first frames: they take some 600 ns a pixel, and where threads have little to do
+    /// their start is what counts.
+    [[nodiscard]] double look_pixels() const {
+        constexpr double kShare = 0.02, kPixel_s = 600e-9;
+        return std::clamp(kShare * budget_s_.value_or(0) / kPixel_s, 4096.0, 65536.0);
+    }
+
+    /// First, small frames of each: what things cost. The quickest of a few count, where there is
+    /// time for them: other programs come between.
+    void look() {
+        look_once();
+        for (int i = 1; budget_s_ && i < kLooks; ++i) {
+            const double share = i == 1 ? 2 * kPilotShare : kPilotShare;
+            if (spent_s() > share * *budget_s_) break;
+            const CostRates before = pilot_.rates;
+            look_once();
+            pilot_.rates = quicker(before, pilot_.rates);
+        }
+        const CostRates nominal = nominal_rates(rays_per_path_);
+        pilot_.rates = budget_s_ ? without_outliers(pilot_.rates, nominal) : nominal;
+    }
+
+    void look_once() {
+        const int reduction = pilot_.reduction;
+        const PathFrame path = frames_.path(reduction, kManySpp, kSeedA);
+        pilot_.found.lanes = path.lanes;
+        rays_per_path_ = path.rays_per_path;
+        if (pilot_.found.has_records_method) {
+            const SurfaceRecordsPlan plan = pilot_plan(16, reduction);
+            const StagedRender made = frames_.records(reduction, plan, kSeedA);
+            pilot_.rates = rates_of(made, plan, frames_.pixels(reduction));
+            first_needy_ = static_cast<double>(made.counts.needy_pixels);
+            count(made, plan.cell * reduction, kUsualGrowth);
+            extrapolate_needy(first_needy_, kUsualNeedySlope);
+        }
+        pilot_.rates.path_sample_s = path.seconds / (frames_.pixels(reduction) * kManySpp);
+    }
+
+    [[nodiscard]] double spent_s() const { return watch_.seconds() - frames_.scene_s(); }
+
+    /// The largest frames that the pilot's share of the budget has room for; 0: none.
+    [[nodiscard]] int affordable_reduction() const {
+        const double budget_s =
+            budget_s_ ? *budget_s_
+                      : frames_.settings().spp * pilot_.found.pixels * pilot_.rates.path_sample_s;
+        const double left_s = kPilotShare * budget_s - (budget_s_ ? spent_s() : 0);
+        const double least = std::min(kLeastPixels, frames_.pixels(pilot_.reduction));
+        for (int reduction = 1; frames_.pixels(reduction) >= least && reduction <= kMostReduction;
+             ++reduction) {
+            if (frames_.pixels(reduction) > kMostPixels) continue;
+            if (cost(reduction) <= left_s) return reduction;
+        }
+        return 0;
+    }
+
+    [[nodiscard]] double cost(int reduction) const {
+        const double pixels = frames_.pixels(reduction);
+        const double path_s = 4 * kManySpp * pixels * pilot_.rates.path_sample_s;
+        if (!pilot_.found.has_records_method) return path_s;
+        PilotFindings found = pilot_.found;
+        const double smaller = static_cast<double>(pilot_.reduction) / reduction;
+        found.pixels = pixels;
+        found.needy_pixels = first_needy_ * std::pow(smaller, kUsualNeedySlope);
+        // Cells of the pilot count as what they stand for: their number is not that of its pixels.
+        const auto frame_s = [&](int cell) {
+            SurfaceRecordsPlan plan = pilot_plan(cell, reduction);
+            plan.cell *= reduction;
+            return surface_records_cost(found, pilot_.rates, plan);
+        };
+        return path_s + 2 * frame_s(16) + frame_s(8);
+    }
+
+    void measure_path() {
+        const int reduction = pilot_.reduction;
+        const PathFrame few_a = frames_.path(reduction, kFewSpp, kSeedA);
+        const PathFrame few_b = frames_.path(reduction, kFewSpp, kSeedB);
+        path_a_ = frames_.path(reduction, kManySpp, kSeedA);
+        path_b_ = frames_.path(reduction, kManySpp, kSeedB);
+        const double few = 0.5 * difference(few_a.radiance, few_b.radiance).mean;
+        const double many = 0.5 * difference(path_a_.radiance, path_b_.radiance).mean;
+        PathErrors errors{many, 1};
+        if (few > 0 && many > 0) {
+            const double octaves = std::log2(double{kManySpp} / kFewSpp);
+            errors.slope = std::clamp(std::log2(few / many) / octaves, 0.8, 1.6);
+        }
+        pilot_.found.path = errors;
+        const double path_s = std::min(path_a_.seconds, path_b_.seconds);
+        pilot_.rates.path_sample_s =
+            std::min(pilot_.rates.path_sample_s, path_s / (frames_.pixels(reduction) * kManySpp));
+    }
+
+    void measure_records(int first_reduction) {
+        const int reduction = pilot_.reduction;
+        const SurfaceRecordsPlan coarse = pilot_plan(16, reduction);
+        const SurfaceRecordsPlan fine = pilot_plan(8, reduction);
+        const StagedRender a = frames_.records(reduction, coarse, kSeedA);
+        const StagedRender b = frames_.records(reduction, coarse, kSeedB);
+        take_rates(a, b, coarse);
+        const auto needy = static_cast<double>(a.counts.needy_pixels);
+        extrapolate_needy(needy, needy_slope(needy, first_reduction));
+        count(a, coarse.cell * reduction, kUsualGrowth);
+        RecordErrors errors{coarse, 0, kUsualBias, 0};
+        errors.noise = noise_at_full_size(a, b, needy);
+        if (fine.cell < coarse.cell) {
+            const StagedRender finer = frames_.records(reduction, fine, kSeedA);
+            const double growth = static_cast<double>(finer.counts.records) /
+                                  std::max<double>(static_cast<double>(a.counts.records), 1);
+            count(finer, fine.cell * reduction, std::clamp(growth, 2.0, 4.0));
+            take_bias(a, finer, coarse.cell * reduction, errors);
+        }
+        take_unexplained(a, errors);
+        pilot_.found.records = errors;
+    }
+
+    void take_rates(const StagedRender& a, const StagedRender& b, const SurfaceRecordsPlan& plan) {
+        const double path_s = pilot_.rates.path_sample_s;
+        const double pixels = frames_.pixels(pilot_.reduction);
+        pilot_.rates =
+            quicker(pilot_.rates, quicker(rates_of(a, plan, pixels), rates_of(b, plan, pixels)));
+        pilot_.rates.path_sample_s = path_s;
+    }
+
+    /// Edges take a larger share of small frames: half of the noise is laid to them.
+    double noise_at_full_size(const StagedRender& a, const StagedRender& b, double needy) {
+        const MeanError both = difference(a.render.frame.radiance, b.render.frame.radiance);
+        noise_ = 0.5 * both.mean;
+        const double share_here = needy / frames_.pixels(pilot_.reduction);
+        const double share_there = pilot_.found.needy_pixels / pilot_.found.pixels;
+        return share_here > 0 ? noise_ * std::sqrt(share_there / share_here) : noise_;
+    }
+
+    /// What halved cells change beyond noise is bias of the coarse ones.
+    void take_bias(const StagedRender& coarse, const StagedRender& fine, int cell,
+                   RecordErrors& errors) {
+        const MeanError both = difference(coarse.render.frame.radiance, fine.render.frame.radiance);
+        const double beyond = both.mean - 2 * noise_;
+        bias_ = std::max(beyond, 0.0);
+        if (beyond < 3 * both.standard_error) return;  // it may be noise
+        errors.bias_at_8 =
+            std::max(beyond * std::pow(kBiasPerHalving, -std::log2(cell / 8.0)), 0.25 * kUsualBias);
+    }
+
+    /// Traced paths must not say much else.
+    void take_unexplained(const StagedRender& a, RecordErrors& errors) const {
+        const MeanError found =
+            error_against(a.render.frame.radiance, path_a_.radiance, path_b_.radiance);
+        const double explained = noise_ + bias_;
+        if (found.mean - 2 * found.standard_error > 4 * explained)
+            errors.unexplained = found.mean - explained;
+    }
+
+    [[nodiscard]] double needy_slope(double needy, int first_reduction) const {
+        if (first_reduction == pilot_.reduction || !(first_needy_ > 0) || !(needy > 0))
+            return kUsualNeedySlope;
+        const double smaller = static_cast<double>(first_reduction) / pilot_.reduction;
+        return std::clamp(std::log(needy / first_needy_) / std::log(smaller), 1.0, 2.0);
+    }
+
+    void extrapolate_needy(double needy, double slope) {
+        pilot_.found.needy_pixels =
+            std::min(needy * std::pow(pilot_.reduction, slope), pilot_.found.pixels);
+    }
+
+    void count(const StagedRender& made, int cell, double growth) {
+        pilot_.found.record_growth = growth;
+        pilot_.found.records_at_8 =
+            static_cast<double>(made.counts.records) * std::pow(growth, std::log2(cell / 8.0));
+    }
+
+    static constexpr int kLooks = 4;
+    static constexpr double kUsualGrowth = 3.8;       ///< of records by halved cells
+    static constexpr double kUsualNeedySlope = 1.15;  ///< needy pixels to the size of the frame
+    static constexpr double kUsualBias = 1e-6;
+    static constexpr int kMostReduction = 2048;
+    static constexpr double kMostPixels = 1 << 20;
+
+    PilotFrames& frames_;
+    std::optional<double> budget_s_;
+    Stopwatch watch_;
+    Pilot pilot_;
+    double rays_per_path_ = 0;
+    double first_needy_ = 0;
+    double noise_ = 0, bias_ = 0;  ///< of the pilot's frames
+    PathFrame path_a_, path_b_;
+};
+
+}  // namespace
+
+Pilot run_pilot(const Scene& scene, const RenderSettings& settings, std::optional<double> budget_s,
+                const Progress& progress) {
+    PilotFrames frames(scene, settings, progress);
+    return PilotRun(frames, budget_s).run();
+}
+
+double nominal_budget_s(const Pilot& pilot, const RenderSettings& settings) {
+    return settings.spp * pilot.found.pixels * pilot.rates.path_sample_s;
+}
+
+}  // namespace vecino

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Arithmetic of the method auto: from what a pilot found and what things cost to a schedule. No
+// clock and no randomness in here.
+#pragma once
+
+#include <optional>
+
+#include "core/grid.h"
+#include "filters/surface_records.h"
+
+namespace vecino {
+
+/// Seconds for one of each.
+struct CostRates {
+    double path_sample_s;   ///< path tracing, of whole packets
+    double first_sample_s;  ///< surface_records: of all pixels
+    double pixel_s;         ///< needs and resolve of a pixel
+    double edge_sample_s;
+    double record_path_s;
+    double record_s;  ///< the fit
+};
+
+/// Of a machine that takes 8.5 ns for a ray: for budgets that are given in samples, which must not
+/// depend on the clock. rays_per_path: of path tracing.
+CostRates nominal_rates(double rays_per_path);
+
+// What a stage of surface_records costs before its first sample, in samples: measured at 512x512,
+// and scene by scene much the same.
+constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 6;
+
+/// Its bias falls so much with cells of half the side.
+constexpr double kBiasPerHalving = 8;
+
+/// Rates with none far above what the others say of the machine, held against the nominal ones: a
+/// stage that seems to take that long was interrupted by another program.
+CostRates without_outliers(const CostRates& rates, const CostRates& nominal);
+
+/// Errors are means of squared differences of sRGB-encoded values in [0,1], as of psnr_float_db.
+struct PathErrors {
+    double at_16_spp = 0;
+    double slope = 1;  ///< error falls as spp to the power of -slope
+};
+
+/// What a small frame of surface_records says of its errors.
+struct RecordErrors {
+    SurfaceRecordsPlan plan;  ///< of that frame
+    double noise = 0;         ///< between frames of other seeds
+    double bias_at_8 = 0;     ///< by cells of 8 pixels
+    double unexplained = 0;   ///< against traced paths: neither noise nor the records' bias
+};
+
+struct PilotFindings {
+    double pixels = 0;               ///< of the frame that is wanted
+    int lanes = 16;                  ///< samples of a packet: path tracing takes as long for fewer
+    double needy_pixels = 0;         ///< of it, extrapolated
+    double records_at_8 = 0;         ///< with cells of 8 pixels
+    double record_growth = 4;        ///< factor of records for cells of half the side
+    bool has_records_method = true;  ///< surface_records can render with these settings
+    std::optional<PathErrors> path;  ///< none: there was no time to find out
+    std::optional<RecordErrors> records;
+};
+
+/// Which method with which numbers, and what is expected of it.
+struct Schedule {
+    bool is_path = true;
+    int spp = 1;  ///< of path
+    SurfaceRecordsPlan plan;
+    double predicted_s = 0;
+    std::optional<double> predicted_error;
+};
+
+/// Seconds that a plan takes.
+double surface_records_cost(const PilotFindings& found, const CostRates& rates,
+                            const SurfaceRecordsPlan& plan);
+
+/// Predicted error of a plan; where the pilot was too short, that of a typical scene.
+double surface_records_error(const PilotFindings& found, const SurfaceRecordsPlan& plan);
+
+/// The best that each method can do in so many seconds, at least its least.
+Schedule plan_path(const PilotFindings& found, const CostRates& rates, double seconds);
+Schedule plan_surface_records(const PilotFindings& found, const CostRates& rates, double seconds);
+
+/// Both, and which of them is chosen. Of two that are equal within half a decibel it is path.
+struct Plans {
+    Schedule path;
+    std::optional<Schedule> records;  ///< none: the method cannot render this
+    bool takes_path = true;
+    const char* reason = "";
+
+    [[nodiscard]] const Schedule& chosen() const { return takes_path ? path : *records; }
+};
+Plans choose_schedule(const PilotFindings& found, const CostRates& rates, double seconds);
+
+}  // namespace vecino

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The method auto: its arithmetic with rates that are given, and its schedules, which must say all
+// that decides the bits.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/image_io.h"
+#include "filters/auto_pilot.h"
+#include "filters/auto_plan.h"
+#include "filters/methods.h"
+#include "tests/catch.h"
+#include "tests/error_of.h"
+#include "tests/program.h"
+
+using namespace vecino;
+
+namespace {
+
+const std::string kScenes = std::string(VECINO_SOURCE_DIR) + "/scenes/";
+
+/// Of a box with a sphere at 512x512.
+PilotFindings usual_findings() {
+    PilotFindings found;
+    found.pixels = 512.0 * 512.0;
+    found.needy_pixels = 14000;
+    found.records_at_8 = 4300;
+    found.record_growth = 3.8;
+    found.path = PathErrors{1.6e-4, 1.4};
+    found.records = RecordErrors{{4, 64, 8, 0, 32, 32, 0.85, 0.15}, 1e-5, 1e-6, 0};
+    return found;
+}
+
+MethodRequest request_of(const Scene& scene, int spp) {
+    RenderSettings settings;
+    settings.size = {48, 40};
+    settings.spp = spp;
+    settings.planes = Planes{Plane::radiance};
+    return {scene, settings, {}};
+}
+
+/// The flags of a schedule, read as a command line would be.
+MethodRequest scheduled(const std::string& schedule, MethodRequest request, const Method*& method) {
+    std::istringstream words(schedule);
+    for (std::string flag, text; words >> flag >> text;) {
+        if (flag == "--method") method = &find_method(text);
+        if (flag == "--spp") request.settings.spp = std::stoi(text);
+        const nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+        for (const MethodOption& row : method_options()) {
+            if (row.flag == flag) row.set(request.parameters, JsonValue(value, "test", flag));
+        }
+    }
+    return request;
+}
+
+}  // namespace
+
+TEST_CASE("a plan fills its budget", "[auto]") {
+    const PilotFindings found = usual_findings();
+    const CostRates rates = nominal_rates(3.4);
+    for (const double seconds : {0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 6.0, 60.0}) {
+        INFO(seconds);
+        const Schedule records = plan_surface_records(found, rates, seconds);
+        CHECK(records.predicted_s <= seconds);
+        CHECK(records.predicted_s >= 0.93 * seconds);
+        CHECK(records.predicted_s == surface_records_cost(found, rates, records.plan));
+        const Schedule path = plan_path(found, rates, seconds);
+        const double packet_s = found.lanes * found.pixels * rates.path_sample_s;
+        CHECK(path.spp % found.lanes == 0);
+        CHECK(path.predicted_s <= std::max(seconds, 1.0001 * packet_s));
+        CHECK(path.predicted_s > seconds - packet_s);
+    }
+}
+
+TEST_CASE("a stage that was interrupted is not taken for a slow one", "[auto]") {
+    const CostRates nominal = nominal_rates(3.4);
+    CostRates slow = nominal;  // a machine of half the speed
+    for (double CostRates::*rate :
+         {&CostRates::path_sample_s, &CostRates::first_sample_s, &CostRates::pixel_s,
+          &CostRates::edge_sample_s, &CostRates::record_path_s, &CostRates::record_s})
+        slow.*rate *= 2;
+    CHECK(without_outliers(slow, nominal).pixel_s == Approx(slow.pixel_s));
+    CostRates interrupted = slow;
+    interrupted.edge_sample_s *= 50;
+    const CostRates sane = without_outliers(interrupted, nominal);
+    CHECK(sane.edge_sample_s == Approx(4 * slow.edge_sample_s));
+    CHECK(sane.path_sample_s == Approx(slow.path_sample_s));
+}
+
+TEST_CASE("more time is never expected to give a worse image", "[auto]") {
+    const PilotFindings found = usual_findings();
+    const CostRates rates = nominal_rates(3.4);
+    double records = 1, path = 1;
+    for (double seconds = 0.04; seconds < 100; seconds *= 1.3) {
+        INFO(seconds);
+        const double records_now = *plan_surface_records(found, rates, seconds).predicted_error;
+        const double path_now = *plan_path(found, rates, seconds).predicted_error;
+        CHECK(records_now <= records * 1.0001);
+        CHECK(path_now <= path);
+        records = records_now;
+        path = path_now;
+    }
+}
+
+TEST_CASE("cells shrink as budgets grow, and sooner where cells are what is wrong", "[auto]") {
+    PilotFindings found = usual_findings();
+    const CostRates rates = nominal_rates(3.4);
+    CHECK(plan_surface_records(found, rates, 0.08).plan.cell >= 8);
+    CHECK(plan_surface_records(found, rates, 4).plan.cell <= 4);
+    const int usual = plan_surface_records(found, rates, 0.25).plan.cell;
+    found.records->bias_at_8 *= 100;
+    CHECK(plan_surface_records(found, rates, 0.25).plan.cell < usual);
+}
+
+TEST_CASE("a budget that nothing fits gets the least of everything", "[auto]") {
+    const PilotFindings found = usual_findings();
+    const CostRates rates = nominal_rates(3.4);
+    CHECK(plan_path(found, rates, 1e-6).spp == found.lanes);
+    const Schedule least = plan_surface_records(found, rates, 1e-6);
+    CHECK(least.plan.pilot_spp == 1);
+    CHECK(least.plan.record_paths >= 1);
+    CHECK(least.predicted_s > 1e-6);
+}
+
+TEST_CASE("what the pilot found decides between methods", "[auto]") {
+    PilotFindings found = usual_findings();
+    const CostRates rates = nominal_rates(3.4);
+    CHECK_FALSE(choose_schedule(found, rates, 1).takes_path);
+    found.records->unexplained = 0.01;  // paths say something else
+    CHECK(choose_schedule(found, rates, 1).takes_path);
+    found.path.reset();  // no time to find out
+    CHECK_FALSE(choose_schedule(found, rates, 1).takes_path);
+    found.has_records_method = false;
+    CHECK(choose_schedule(found, rates, 1).takes_path);
+    CHECK_FALSE(choose_schedule(found, rates, 1).records.has_value());
+}
+
+TEST_CASE("of methods that are equal within half a decibel, path is taken", "[auto]") {
+    PilotFindings found = usual_findings();
+    const CostRates rates = nominal_rates(3.4);
+    const double records = *plan_surface_records(found, rates, 1).predicted_error;
+    const double now = *plan_path(found, rates, 1).predicted_error;
+    found.path->at_16_spp *= records / now * 1.11;
+    CHECK(choose_schedule(found, rates, 1).takes_path);
+    found.path->at_16_spp *= 1.03;
+    CHECK_FALSE(choose_schedule(found, rates, 1).takes_path);
+}
+
+TEST_CASE("a schedule gives the bits that auto gave", "[auto]") {
+    for (const char* name : {"cornell_sphere", "near_lamp"}) {
+        INFO(name);
+        const Scene scene = load_scene(kScenes + name + ".json");
+        for (const int spp : {4, 64, 2048}) {
+            INFO(spp);
+            const MethodRequest request = request_of(scene, spp);
+            const MethodRender made = render(find_method("auto"), request);
+            const Method* method = nullptr;
+            const MethodRequest again = scheduled(made.facts["schedule"], request, method);
+            REQUIRE(method != nullptr);
+            CHECK(render(*method, again).render.frame.radiance == made.render.frame.radiance);
+        }
+    }
+}
+
+TEST_CASE("a budget of samples gives the same bits and facts on any number of threads", "[auto]") {
+    const Scene scene = load_scene(kScenes + "hard_shadows.json");
+    MethodRequest request = request_of(scene, 8192);
+    request.settings.threads = 1;
+    const MethodRender one = render(find_method("auto"), request);
+    CHECK(one.facts["pilot_compares"] == true);
+    for (const int threads : {2, 7}) {
+        request.settings.threads = threads;
+        const MethodRender many = render(find_method("auto"), request);
+        CHECK(many.render.frame.radiance == one.render.frame.radiance);
+        CHECK(many.facts == one.facts);
+    }
+}
+
+TEST_CASE("facts of auto say what was chosen, why, and what is expected", "[auto]") {
+    const Scene scene = load_scene(kScenes + "cornell.json");
+    const MethodRender result = render(find_method("auto"), request_of(scene, 8192));
+    const nlohmann::json& facts = result.facts;
+    CHECK(facts["chosen"] == "surface_records");
+    CHECK_FALSE(facts["reason"].get<std::string>().empty());
+    CHECK(facts["schedule"].get<std::string>().starts_with("--method surface_records --pilot-spp"));
+    CHECK(facts["predicted_psnr_float_db"] == facts["predicted_by_method"]["surface_records"]);
+    CHECK(facts["predicted_by_method"]["path"].get<double>() > 30);
+    for (const char* stage : {"auto_pilot", "auto_run", "auto_predicted"})
+        CHECK(result.stage_s.at(stage).get<double>() > 0);
+}
+
+TEST_CASE("light that is found by chance leaves path tracing alone", "[auto]") {
+    const Scene scene = load_scene(kScenes + "cornell.json");
+    MethodRequest request = request_of(scene, 64);
+    request.settings.light_sampling = LightSampling::none;
+    const nlohmann::json facts = render(find_method("auto"), request).facts;
+    CHECK(facts["chosen"] == "path");
+    CHECK_FALSE(facts["predicted_by_method"].contains("surface_records"));
+}
+
+TEST_CASE("a scene without light has no error to predict", "[auto]") {
+    Scene scene = load_scene(kScenes + "cornell.json");
+    for (Material& material : scene.materials) material.emission = glm::vec3(0);
+    const MethodRender made = render(find_method("auto"), request_of(scene, 8192));
+    CHECK(made.facts["chosen"] == "path");
+    CHECK(made.facts["predicted_psnr_float_db"].is_null());
+    CHECK(made.render.frame.radiance(3, 5) == glm::vec3(0));
+}
+
+TEST_CASE("the program takes a budget and says how to repeat it", "[auto]") {
+    const TempDir dir;
+    const std::string common = "'" + kScenes + "cornell.json' --size 64x48 --planes radiance ";
+    const Outcome made =
+        run_in(dir, "render " + common + "-o a.exr --method auto --time-budget 0.2");
+    REQUIRE(made.code == 0);
+    const std::string mark = "again by ";
+    REQUIRE(made.err.find(mark) != std::string::npos);
+    std::string schedule = made.err.substr(made.err.find(mark) + mark.size());
+    schedule.resize(schedule.find('\n'));
+    REQUIRE(run_in(dir, "render " + common + "-o b.exr " + schedule).code == 0);
+    CHECK(load_frame(dir.path("a.exr")).radiance == load_frame(dir.path("b.exr")).radiance);
+}
+
+TEST_CASE("a budget that is none is one clear line", "[auto]") {
+    const TempDir dir;
+    const std::string start = "render '" + kScenes + "cornell.json' -o a.exr --method ";
+    for (const char* bad : {"0", "-1", "nan", "inf", "1e9", "soon"}) {
+        INFO(bad);
+        const Outcome made = run_in(dir, start + "auto --time-budget=" + bad);
+        CHECK(made.code == 64);
+        CHECK(made.err.find("--time-budget") != std::string::npos);
+        CHECK(std::count(made.err.begin(), made.err.end(), '\n') == 1);
+    }
+    const Outcome other = run_in(dir, start + "path --time-budget 1");
+    CHECK(other.code == 64);
+    CHECK(other.err.find("--time-budget: found with --method path, allowed: with auto") !=
+          std::string::npos);
+}
