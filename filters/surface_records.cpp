@@ -5,8 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>  // DEV
-#include <ctime>    // DEV
 #include <mutex>
 #include <string>
 
@@ -78,12 +76,9 @@ class Band {
 
     void run(StagedRender& out, const std::function<void()>& checkpoint) {
         const auto timed = [&](double& seconds, const auto& stage) {
-            static const bool cpu = getenv("SRCPU");                          // DEV
-            const double c0 = static_cast<double>(clock()) / CLOCKS_PER_SEC;  // DEV
             const Stopwatch watch;
             stage();
-            seconds +=
-                cpu ? static_cast<double>(clock()) / CLOCKS_PER_SEC - c0 : watch.seconds();  // DEV
+            seconds += watch.seconds();
             checkpoint();
         };
         RenderStatistics& statistics = out.render.statistics;
