@@ -89,6 +89,13 @@ std::string read_file(const std::string& path) {
     return bytes;
 }
 
+std::string read_beginning(const std::string& path) {
+    const File file = open_to_read(path);
+    std::string bytes(std::size_t{1} << 20, '\0');
+    bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+    return bytes;
+}
+
 std::string temporary_name(const std::string& extension) {
     static std::atomic<unsigned> count = 0;
     return std::string(kTemporary) + std::to_string(::getpid()) + "." + std::to_string(count++) +

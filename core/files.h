@@ -39,6 +39,9 @@ void require_writable(const std::string& path);
 /// All bytes of a file. Throws Error(file).
 std::string read_file(const std::string& path);
 
+/// The first 1 MiB of a file, or all of it: the header of any image. Throws Error(file).
+std::string read_beginning(const std::string& path);
+
 /// A file name unlike any other of this process or another. Short, so that a target of any legal
 /// length has one.
 std::string temporary_name(const std::string& extension);

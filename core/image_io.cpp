@@ -14,6 +14,7 @@
 #include "core/channel_file.h"
 #include "core/color.h"
 #include "core/error.h"
+#include "core/exr_check.h"
 #include "core/files.h"
 #include "core/image_format.h"
 #include "core/json_read.h"
@@ -45,6 +46,8 @@ struct Location {
 
 Source open_source(const std::string& path) {
     require_readable(path);
+    const std::string exr = exr_fault(read_beginning(path));
+    if (!exr.empty()) cannot_read(path, exr);
     if (path.ends_with(".png")) {
         const std::string fault = png_fault(read_file(path));
         if (!fault.empty()) cannot_read(path, fault);

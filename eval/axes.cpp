@@ -57,7 +57,7 @@ std::vector<std::string_view> cell_keys() {
 
 void require_cell_value(const std::string& key, const JsonValue& value) {
     if (key == "scene" || key == "image") {
-        (void)value.string();
+        if (value.string().empty()) value.fail("a string that is not empty");
     } else if (key == "scheme") {
         require_one_of(names_of(all_schemes()), value);
     } else if (key == "method") {

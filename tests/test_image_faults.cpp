@@ -240,3 +240,18 @@ TEST_CASE("a temporary file takes its target's place with what was written", "[f
     CHECK(dir.names() == FileNames{"a.txt"});
     CHECK(read_file(path) == "new");
 }
+
+TEST_CASE("an EXR file with channels of a type that there is not cannot be read", "[image_io]") {
+    const TempDir dir;
+    const std::string path = dir.path("a.exr");
+    save_image(make_image({2, 2}), path);
+    std::string bytes = dir.read("a.exr");
+    const std::size_t type = bytes.find(std::string("chlist\0", 7)) + 7 + 4 + 2;  // after "B"
+    REQUIRE(bytes[type] == 2);
+    bytes[type] = 3;
+    dir.write("a.exr", bytes);
+    const Error error = error_of([&] { (void)load_frame(path); });
+    CHECK(error.code() == ExitCode::file);
+    CHECK(std::string(error.what()) ==
+          path + ": cannot be read: channel B is of the unknown type 3");
+}

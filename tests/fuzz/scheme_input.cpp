@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/scheme_input.h"
 
+#include <iterator>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "core/error.h"
+#include "filters/guide.h"
 
 namespace vecino::fuzz {
 namespace {
@@ -52,6 +55,35 @@ Frame any_frame(Bytes& bytes) {
     for (glm::vec3& color : frame.radiance.values()) set_value(color, bytes);
     for (const PlaneInfo& plane : all_planes().subspan(1)) fill_plane(frame, plane, bytes);
     return frame;
+}
+
+glm::vec3 plausible(Plane plane, Bytes& bytes) {
+    constexpr glm::vec3 kNormals[] = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}, {0.6f, 0, 0.8f}, {0, 0, 0}};
+    if (plane == Plane::normal) return kNormals[bytes.byte() % std::size(kNormals)];
+    glm::vec3 value;
+    for (int c = 0; c < 3; ++c) value[c] = static_cast<float>(bytes.byte());
+    return plane == Plane::position ? value / 16.0f - 8.0f : value / 255.0f;
+}
+
+/// Planes that a renderer would write, for the most part.
+Frame any_guide(Extent size, Bytes& bytes) {
+    Frame guide;
+    for (const PlaneInfo& plane : all_planes().subspan(1)) {
+        if (!kGuidePlanes.has(plane.plane) || bytes.chance_in(8)) continue;
+        const bool is_plausible = !bytes.chance_in(8);
+        const auto fill = [&]<class T>(Grid<T> Frame::*member) {
+            guide.*member = Grid<T>(size);
+            for (T& value : (guide.*member).values()) {
+                if constexpr (std::is_same_v<T, glm::vec3>) {
+                    value = plausible(plane.plane, bytes);
+                    if (is_plausible && !bytes.chance_in(64)) continue;
+                }
+                set_value(value, bytes);
+            }
+        };
+        std::visit(fill, plane.member);
+    }
+    return guide;
 }
 
 /// Through the table, as matrices and the command line do.
@@ -110,6 +142,10 @@ SchemeInput scheme_input(Bytes bytes) {
     input.low = any_frame(bytes);
     input.request.size = any_size(input.low.size(), bytes);
     input.request.threads = 1;
+    const Extent size = input.request.size;
+    if (!input.scheme->uses_guide() || size.width < 1 || size.height < 1) return input;
+    const int scale = bytes.chance_in(4) ? 2 : 1;
+    input.guide = any_guide({scale * size.width, scale * size.height}, bytes);
     return input;
 }
 

@@ -11,7 +11,8 @@ namespace vecino::fuzz {
 struct SchemeInput {
     const Scheme* scheme;
     Frame low;
-    ReconstructionRequest request;
+    Frame guide;  ///< as a file may hold it, not checked; empty for schemes without one
+    ReconstructionRequest request;  ///< its guide is not set
 };
 
 SchemeInput scheme_input(Bytes bytes);
