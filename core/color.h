@@ -15,6 +15,11 @@ inline float srgb_encode(float linear) {
     return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
 }
 
+/// How fast the encoded value changes with a linear one in [0,1].
+inline float srgb_slope(float linear) {
+    return linear < 0.0031308f ? 12.92f : 0.4395833f * std::pow(linear, -0.5833333f);
+}
+
 /// sRGB-encoded [0,1] to linear [0,1].
 inline float srgb_decode(float encoded) {
     return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);

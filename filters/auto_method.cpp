@@ -3,11 +3,13 @@
 // The method auto: a pilot, a schedule, and a run of another method by that schedule.
 #include <cmath>
 #include <string>
+#include <utility>
 
-#include "core/timing.h"
+#include "core/parallel.h"
 #include "filters/auto_pilot.h"
 #include "filters/auto_plan.h"
 #include "filters/method_rows.h"
+#include "filters/pace.h"
 
 namespace vecino {
 namespace {
@@ -31,21 +33,11 @@ void give_plan(const SurfaceRecordsPlan& plan, SurfaceRecordsOptions& options) {
     options.refine_tau = plan.refine_tau;
 }
 
-/// What runs: the request itself, with a method and numbers of its own.
+/// What ran: the request itself, with a method and numbers of its own.
 struct Chosen {
     const Method& method;
     MethodRequest request;
 };
-
-Chosen chosen_run(const MethodRequest& request, const Schedule& schedule) {
-    Chosen run{find_method(schedule.is_path ? "path" : "surface_records"), request};
-    if (schedule.is_path) {
-        run.request.settings.spp = schedule.spp;
-    } else {
-        give_plan(schedule.plan, run.request.parameters.surface_records);
-    }
-    return run;
-}
 
 /// A part of a command line that gives the same bits.
 std::string schedule_text(const Chosen& run) {
@@ -58,17 +50,47 @@ std::string schedule_text(const Chosen& run) {
     return text;
 }
 
-Json facts_of(const Plans& plans, const Pilot& pilot, const Chosen& run) {
-    const Schedule& chosen = plans.chosen();
+/// What has to be known to say what was done.
+struct Decision {
+    const Pilot& pilot;
+    Plans plans;
+};
+
+Json facts_of(const Decision& decision, const Chosen& run) {
+    const Plans& plans = decision.plans;
     Json predicted{{"path", decibels(plans.path.predicted_error)}};
     if (plans.records) predicted["surface_records"] = decibels(plans.records->predicted_error);
     return {{"chosen", run.method.name},
             {"reason", plans.reason},
             {"schedule", schedule_text(run)},
-            {"predicted_psnr_float_db", decibels(chosen.predicted_error)},
+            {"predicted_psnr_float_db", decibels(plans.chosen().predicted_error)},
             {"predicted_by_method", predicted},
-            {"pilot_reduction", pilot.reduction},
-            {"pilot_compares", pilot.found.path.has_value()}};
+            {"pilot_reduction", decision.pilot.reduction},
+            {"pilot_compares", decision.pilot.found.path.has_value()}};
+}
+
+MethodRender run_path(const MethodRequest& request, Decision& decision, const Progress& progress) {
+    Chosen run{find_method("path"), request};
+    run.request.settings.spp = decision.plans.path.spp;
+    MethodRender out = run.method.run(run.request, progress);
+    out.facts.update(facts_of(decision, run));
+    return out;
+}
+
+/// With a pace the plan that was chosen is where it starts from, and what it ends with is what
+/// facts say.
+MethodRender run_records(const MethodRequest& request, Decision& decision, Pace* pace,
+                         const Progress& progress) {
+    Schedule& schedule = *decision.plans.records;
+    const SurfaceRecordsPlan plan = pace != nullptr ? Pace::first_plan() : schedule.plan;
+    StagedRender staged = render_in_stages(request.scene, request.settings, {plan, pace}, progress);
+    schedule.plan = staged.plan;
+    schedule.predicted_error = surface_records_error(decision.pilot.found, staged.plan);
+    Chosen run{find_method("surface_records"), request};
+    give_plan(staged.plan, run.request.parameters.surface_records);
+    MethodRender out = method_render(std::move(staged));
+    out.facts.update(facts_of(decision, run));
+    return out;
 }
 
 }  // namespace
@@ -78,17 +100,20 @@ MethodRender run_auto(const MethodRequest& request, const Progress& progress) {
     const Pilot pilot = run_pilot(request.scene, request.settings, budget_s, progress);
     const double left_s = budget_s ? *budget_s - pilot.spent_s
                                    : (1 - kPilotShare) * nominal_budget_s(pilot, request.settings);
-    const Plans plans = choose_schedule(pilot.found, pilot.rates, left_s);
-    const Chosen run = chosen_run(request, plans.chosen());
-    MethodRender out = run.method.run(run.request, progress);
+    Decision decision{pilot, choose_schedule(pilot.found, pilot.rates, left_s)};
+    const int threads = request.settings.threads;
+    Pace pace(left_s, threads > 0 ? threads : default_thread_count(), pilot.found);
+    MethodRender out = decision.plans.takes_path
+                           ? run_path(request, decision, progress)
+                           : run_records(request, decision, budget_s ? &pace : nullptr, progress);
     RenderStatistics& statistics = out.render.statistics;
     const double run_s = statistics.trace_s + out.reconstruct_s;
     statistics.scene_s += pilot.scene_s;
     statistics.trace_s += pilot.spent_s;
-    out.facts.update(facts_of(plans, pilot, run));
     out.stage_s["auto_pilot"] = pilot.spent_s;
     out.stage_s["auto_run"] = run_s;
-    out.stage_s["auto_predicted"] = plans.chosen().predicted_s;
+    out.stage_s["auto_predicted"] =
+        budget_s && !decision.plans.takes_path ? left_s : decision.plans.chosen().predicted_s;
     return out;
 }
 

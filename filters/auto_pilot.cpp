@@ -55,11 +55,9 @@ MeanError difference(const Image& a, const Image& b) {
     });
 }
 
-/// How fast sRGB values change with linear ones; not at all where they are clipped.
-double srgb_slope(float linear) {
-    if (linear > 1.0f) return 0;
-    if (linear <= 0.0031308f) return 12.92;
-    return 0.4395833 * std::pow(static_cast<double>(linear), -0.5833333);
+/// Not at all where they are clipped.
+double clipped_slope(float linear) {
+    return linear > 1.0f ? 0.0 : static_cast<double>(srgb_slope(linear));
 }
 
 /// Mean squared error of an image against the truth that two independent, unbiased images are
@@ -68,7 +66,7 @@ MeanError error_against(const Image& image, const Image& a, const Image& b) {
     return mean_over(image, [&](int x, int y) {
         double sum = 0;
         for (int c = 0; c < 3; ++c) {
-            const double slope = srgb_slope(image(x, y)[c]);
+            const double slope = clipped_slope(image(x, y)[c]);
             const auto value = static_cast<double>(image(x, y)[c]);
             sum += slope * slope * (value - static_cast<double>(a(x, y)[c])) *
                    (value - static_cast<double>(b(x, y)[c]));
@@ -117,7 +115,7 @@ class PilotFrames {
 
     StagedRender records(int reduction, const SurfaceRecordsPlan& plan, std::uint32_t seed) {
         StagedRender made =
-            render_in_stages(scene_, reduced_settings(reduction, seed), plan, progress_);
+            render_in_stages(scene_, reduced_settings(reduction, seed), {plan}, progress_);
         scene_s_ += made.render.statistics.scene_s;
         return made;
     }
@@ -143,34 +141,6 @@ SurfaceRecordsPlan pilot_plan(int cell, int reduction) {
 
 // ---------------------------------------------------------------- what they say
 
-double share(double seconds, double work) {
-    return work > 0 ? seconds / work : 0;
-}
-
-/// Rates of surface_records from the stages of one frame. The offsets are those of the cost model.
-CostRates rates_of(const StagedRender& made, const SurfaceRecordsPlan& plan, double pixels) {
-    const StageTimes& t = made.times;
-    const auto records = static_cast<double>(made.counts.records);
-    const auto needy = static_cast<double>(made.counts.needy_pixels);
-    CostRates rates{};
-    rates.first_sample_s = share(t.pilot_s, pixels * (plan.pilot_spp + kPilotStart));
-    rates.pixel_s = share(t.needs_s + t.resolve_s, pixels);
-    rates.edge_sample_s = share(t.samples_s, needy * (plan.edge_spp + kEdgeStart));
-    rates.record_path_s = share(t.records_s, records * (plan.record_paths + kRecordStart));
-    rates.record_s = share(t.fit_s, records);
-    return rates;
-}
-
-/// Of two measurements the quicker, which less else came between.
-CostRates quicker(const CostRates& a, const CostRates& b) {
-    return {std::min(a.path_sample_s, b.path_sample_s),
-            std::min(a.first_sample_s, b.first_sample_s),
-            std::min(a.pixel_s, b.pixel_s),
-            std::min(a.edge_sample_s, b.edge_sample_s),
-            std::min(a.record_path_s, b.record_path_s),
-            std::min(a.record_s, b.record_s)};
-}
-
 class PilotRun {
   public:
     PilotRun(PilotFrames& frames, std::optional<double> budget_s)
@@ -185,21 +155,27 @@ class PilotRun {
         const double start_s = watch_.seconds();          // no part of any budget
         watch_ = {};
         (void)frames_.take_scene_s();
-        look();
-        const int reduction = affordable_reduction();
-        if (reduction > 0) {
-            const int first = pilot_.reduction;
-            pilot_.reduction = reduction;
-            measure_path();
-            if (pilot_.found.has_records_method) measure_records(first);
+        if (is_hurried()) {
+            assume();
+        } else {
+            look();
+            compare();
         }
-        if (!budget_s_) pilot_.rates = nominal_rates(rays_per_path_);
         pilot_.spent_s = spent_s();
         pilot_.scene_s = frames_.scene_s() + start_s;
         return pilot_;
     }
 
   private:
+    void compare() {
+        const int reduction = affordable_reduction();
+        if (reduction == 0) return;
+        const int first = pilot_.reduction;
+        pilot_.reduction = reduction;
+        measure_path();
+        if (pilot_.found.has_records_method) measure_records(first);
+    }
+
     /// Of the first frames: they take some 600 ns a pixel, and where threads have little to do
     /// their start is what counts.
     [[nodiscard]] double look_pixels() const {
@@ -207,35 +183,38 @@ class PilotRun {
         return std::clamp(kShare * budget_s_.value_or(0) / kPixel_s, 4096.0, 65536.0);
     }
 
-    /// First, small frames of each: what things cost. The quickest of a few count, where there is
-    /// time for them: other programs come between.
+    /// First, small frames of each: what a path costs, and what there is to see.
     void look() {
-        look_once();
-        for (int i = 1; budget_s_ && i < kLooks; ++i) {
-            const double share = i == 1 ? 2 * kPilotShare : kPilotShare;
-            if (spent_s() > share * *budget_s_) break;
-            const CostRates before = pilot_.rates;
-            look_once();
-            pilot_.rates = quicker(before, pilot_.rates);
-        }
-        const CostRates nominal = nominal_rates(rays_per_path_);
-        pilot_.rates = budget_s_ ? without_outliers(pilot_.rates, nominal) : nominal;
-    }
-
-    void look_once() {
         const int reduction = pilot_.reduction;
         const PathFrame path = frames_.path(reduction, kManySpp, kSeedA);
         pilot_.found.lanes = path.lanes;
         rays_per_path_ = path.rays_per_path;
-        if (pilot_.found.has_records_method) {
-            const SurfaceRecordsPlan plan = pilot_plan(16, reduction);
-            const StagedRender made = frames_.records(reduction, plan, kSeedA);
-            pilot_.rates = rates_of(made, plan, frames_.pixels(reduction));
-            first_needy_ = static_cast<double>(made.counts.needy_pixels);
-            count(made, plan.cell * reduction, kUsualGrowth);
-            extrapolate_needy(first_needy_, kUsualNeedySlope);
+        pilot_.rates = nominal_rates(rays_per_path_);
+        if (budget_s_) {
+            const double path_s = path.seconds / (frames_.pixels(reduction) * kManySpp);
+            pilot_.rates = slower(pilot_.rates, path_s / pilot_.rates.path_sample_s);
         }
-        pilot_.rates.path_sample_s = path.seconds / (frames_.pixels(reduction) * kManySpp);
+        if (!pilot_.found.has_records_method) return;
+        const SurfaceRecordsPlan plan = pilot_plan(16, reduction);
+        const StagedRender made = frames_.records(reduction, plan, kSeedA);
+        first_needy_ = static_cast<double>(made.counts.needy_pixels);
+        count(made, plan.cell * reduction, kUsualGrowth);
+        extrapolate_needy(first_needy_, kUsualNeedySlope);
+    }
+
+    /// Whether even the smallest frames take more than the pilot's share, on a usual machine.
+    [[nodiscard]] bool is_hurried() const {
+        constexpr double kLeastPilot_s = 0.03;
+        return budget_s_ && pilot_.found.has_records_method &&
+               kPilotShare * *budget_s_ < kLeastPilot_s;
+    }
+
+    void assume() {
+        constexpr double kUsualNeedy = 0.06, kUsualRecords = 1.06 / 64;
+        pilot_.rates = nominal_rates(kUsualRays);
+        pilot_.found.needy_pixels = kUsualNeedy * pilot_.found.pixels;
+        pilot_.found.records_at_8 = kUsualRecords * pilot_.found.pixels;
+        pilot_.found.record_growth = kUsualGrowth;
     }
 
     [[nodiscard]] double spent_s() const { return watch_.seconds() - frames_.scene_s(); }
@@ -286,9 +265,10 @@ class PilotRun {
             errors.slope = std::clamp(std::log2(few / many) / octaves, 0.8, 1.6);
         }
         pilot_.found.path = errors;
-        const double path_s = std::min(path_a_.seconds, path_b_.seconds);
-        pilot_.rates.path_sample_s =
-            std::min(pilot_.rates.path_sample_s, path_s / (frames_.pixels(reduction) * kManySpp));
+        if (!budget_s_) return;
+        const double path_s =
+            std::min(path_a_.seconds, path_b_.seconds) / (frames_.pixels(reduction) * kManySpp);
+        pilot_.rates = slower(pilot_.rates, path_s / pilot_.rates.path_sample_s);
     }
 
     void measure_records(int first_reduction) {
@@ -297,12 +277,11 @@ class PilotRun {
         const SurfaceRecordsPlan fine = pilot_plan(8, reduction);
         const StagedRender a = frames_.records(reduction, coarse, kSeedA);
         const StagedRender b = frames_.records(reduction, coarse, kSeedB);
-        take_rates(a, b, coarse);
         const auto needy = static_cast<double>(a.counts.needy_pixels);
         extrapolate_needy(needy, needy_slope(needy, first_reduction));
         count(a, coarse.cell * reduction, kUsualGrowth);
-        RecordErrors errors{coarse, 0, kUsualBias, 0};
-        errors.noise = noise_at_full_size(a, b, needy);
+        RecordErrors errors = kUsualErrors;
+        take_noise(a, b, coarse, errors);
         if (fine.cell < coarse.cell) {
             const StagedRender finer = frames_.records(reduction, fine, kSeedA);
             const double growth = static_cast<double>(finer.counts.records) /
@@ -314,21 +293,16 @@ class PilotRun {
         pilot_.found.records = errors;
     }
 
-    void take_rates(const StagedRender& a, const StagedRender& b, const SurfaceRecordsPlan& plan) {
-        const double path_s = pilot_.rates.path_sample_s;
-        const double pixels = frames_.pixels(pilot_.reduction);
-        pilot_.rates =
-            quicker(pilot_.rates, quicker(rates_of(a, plan, pixels), rates_of(b, plan, pixels)));
-        pilot_.rates.path_sample_s = path_s;
-    }
-
-    /// Edges take a larger share of small frames: half of the noise is laid to them.
-    double noise_at_full_size(const StagedRender& a, const StagedRender& b, double needy) {
-        const MeanError both = difference(a.render.frame.radiance, b.render.frame.radiance);
-        noise_ = 0.5 * both.mean;
-        const double share_here = needy / frames_.pixels(pilot_.reduction);
-        const double share_there = pilot_.found.needy_pixels / pilot_.found.pixels;
-        return share_here > 0 ? noise_ * std::sqrt(share_there / share_here) : noise_;
+    /// What edges do not explain of the noise is that of records.
+    void take_noise(const StagedRender& a, const StagedRender& b, const SurfaceRecordsPlan& plan,
+                    RecordErrors& errors) {
+        noise_ = 0.5 * difference(a.render.frame.radiance, b.render.frame.radiance).mean;
+        RecordErrors edges = errors;
+        edges.record_noise = edges.bias_at_8 = 0;
+        PilotFindings only;
+        only.records = edges;
+        const double of_edges = surface_records_error(only, plan);
+        errors.record_noise = std::max(noise_ - of_edges, 0.1 * noise_) / record_noise_share(plan);
     }
 
     /// What halved cells change beyond noise is bias of the coarse ones.
@@ -338,8 +312,8 @@ class PilotRun {
         const double beyond = both.mean - 2 * noise_;
         bias_ = std::max(beyond, 0.0);
         if (beyond < 3 * both.standard_error) return;  // it may be noise
-        errors.bias_at_8 =
-            std::max(beyond * std::pow(kBiasPerHalving, -std::log2(cell / 8.0)), 0.25 * kUsualBias);
+        errors.bias_at_8 = std::max(beyond * std::pow(kBiasPerHalving, -std::log2(cell / 8.0)),
+                                    0.25 * kUsualErrors.bias_at_8);
     }
 
     /// Traced paths must not say much else.
@@ -369,10 +343,9 @@ class PilotRun {
             static_cast<double>(made.counts.records) * std::pow(growth, std::log2(cell / 8.0));
     }
 
-    static constexpr int kLooks = 4;
+    static constexpr double kUsualRays = 3.4;         ///< of a path
     static constexpr double kUsualGrowth = 3.8;       ///< of records by halved cells
     static constexpr double kUsualNeedySlope = 1.15;  ///< needy pixels to the size of the frame
-    static constexpr double kUsualBias = 1e-6;
     static constexpr int kMostReduction = 2048;
     static constexpr double kMostPixels = 1 << 20;
 

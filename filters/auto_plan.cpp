@@ -2,24 +2,15 @@
 #include "filters/auto_plan.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <functional>
 
 namespace vecino {
 namespace {
 
-// Cells are halved where surfaces meet: so many records for each that is there.
-constexpr double kRefinedShare = 0.75;
-
-// Of a typical scene, where the pilot was too short to tell.
-constexpr double kTypicalNoise = 1.6e-5;  ///< by first 2, edge 32, records 64: 48 dB
-constexpr double kTypicalBias = 1e-6;     ///< by cells of 8 pixels: 60 dB
-constexpr SurfaceRecordsPlan kTypicalPlan{2, 32, 8, 0, 64, 64, 1.0, 0.15};
-
-// Errors fall by samples of each kind to this power: Sobol points.
-constexpr double kNoiseSlope = 0.65;
 constexpr double kBiasPerLevel = 1.6;  ///< bias falls so much with a level
+constexpr double kRefinedArea = 0.3;   ///< of the image: what refined records are shown in
 
 constexpr int kMostPackets = 1 << 16;
 constexpr int kMostEdgeSpp = 65536;
@@ -34,43 +25,53 @@ double records_of(const PilotFindings& found, int cell) {
         {found.records_at_8 * std::pow(found.record_growth, halvings), cells * 0.5, 1.0});
 }
 
-/// A number of samples that 16 lanes fill; Sobol points want more than that only at the start.
-int scaled(int value, double factor, int most) {
-    if (value == 0) return 0;
-    const double wanted = std::max(value * factor, 1.0);
-    const double step = wanted >= 64 ? 16 : 1;
-    return static_cast<int>(std::min(std::round(wanted / step) * step, static_cast<double>(most)));
+/// Samples in whole packets, where there are several.
+int in_packets(double samples, int most) {
+    const double step = samples >= 64 ? 16 : 1;
+    return static_cast<int>(
+        std::clamp(std::round(samples / step) * step, 1.0, static_cast<double>(most)));
 }
 
-SurfaceRecordsPlan scaled(SurfaceRecordsPlan plan, double factor) {
-    plan.edge_spp = scaled(plan.edge_spp, factor, kMostEdgeSpp);
-    plan.record_paths = scaled(plan.record_paths, factor, kMostPaths);
-    plan.refined_record_paths = scaled(plan.refined_record_paths, factor, kMostPaths);
+/// What is chosen among: sides of cells, levels, and paths of a record for each edge sample.
+struct Structure {
+    int cell, levels;
+    double fit_sigma, refine_tau;
+};
+constexpr Structure kStructures[] = {
+    {16, 0, 1.0, 0.15}, {8, 0, 0.85, 0.15}, {4, 0, 1.0, 0.15}, {4, 1, 1.0, 0.15}, {4, 2, 1.0, 0.2}};
+constexpr double kPathsPerSample[] = {1, 2, 4, 8, 16, 32};
+
+// Records of fewer paths are not worth their place.
+constexpr int kLeastPaths = 16;
+constexpr int kLeastEdgeSpp = 4;
+
+SurfaceRecordsPlan plan_by(const Structure& structure, double edge_spp, double paths) {
+    // First samples find what the others are for: the more of these, the more of them.
+    const double pilot = std::clamp(edge_spp / 16, 1.0, 32.0);
+    const int record_paths = in_packets(std::max(paths, double{kLeastPaths}), kMostPaths);
+    SurfaceRecordsPlan plan;
+    plan.pilot_spp = static_cast<int>(std::bit_floor(static_cast<unsigned>(pilot)));
+    plan.edge_spp = in_packets(edge_spp, kMostEdgeSpp);
+    plan.cell = structure.cell;
+    plan.levels = structure.levels;
+    plan.record_paths = record_paths;
+    plan.refined_record_paths = std::max(record_paths / 2, kLeastPaths);
+    plan.fit_sigma = structure.fit_sigma;
+    plan.refine_tau = structure.refine_tau;
     return plan;
 }
 
-// Plans are scaled so far: first samples are not, and others in plenty do not make up for them.
-constexpr double kLeastFactor = 1.0 / 16, kMostFactor = 4;
-
-/// The largest factor that fits, to 1 %; less than least where none does.
-double factor_that_fits(const PilotFindings& found, const CostRates& rates,
-                        const SurfaceRecordsPlan& plan, double seconds) {
-    double low = kLeastFactor, high = 1024;
-    if (surface_records_cost(found, rates, scaled(plan, low)) > seconds) return 0;
+/// The most samples that fit; the least there are where none do.
+SurfaceRecordsPlan filled(const PilotFindings& found, const CostRates& rates,
+                          const std::function<SurfaceRecordsPlan(double)>& plan_of,
+                          double seconds) {
+    double low = kLeastEdgeSpp, high = kMostEdgeSpp;
     while (high > 1.01 * low) {
         const double middle = std::sqrt(low * high);
-        const bool fits = surface_records_cost(found, rates, scaled(plan, middle)) <= seconds;
-        (fits ? low : high) = middle;
+        (surface_records_cost(found, rates, plan_of(middle)) <= seconds ? low : high) = middle;
     }
-    return low;
+    return plan_of(low);
 }
-
-/// Plans of the method itself, by growing budgets: their numbers of samples are scaled.
-constexpr int kSteps[] = {2, 4, 8, 16, 32, 64, 128};
-
-constexpr double CostRates::*kRates[] = {&CostRates::path_sample_s, &CostRates::first_sample_s,
-                                         &CostRates::pixel_s,       &CostRates::edge_sample_s,
-                                         &CostRates::record_path_s, &CostRates::record_s};
 
 }  // namespace
 
@@ -80,19 +81,9 @@ CostRates nominal_rates(double rays_per_path) {
     return {path_s, 12.6e-9, 95e-9, 11e-9, 0.55 * path_s, 0.7e-6};
 }
 
-CostRates without_outliers(const CostRates& rates, const CostRates& nominal) {
-    constexpr double kMostAbove = 4;
-    CostRates out = rates;
-    std::array<double, std::size(kRates)> slowness{};
-    std::ranges::transform(kRates, slowness.begin(),
-                           [&](auto rate) { return rates.*rate / nominal.*rate; });
-    std::array<double, std::size(kRates)> sorted = slowness;
-    std::ranges::sort(sorted);
-    // Of an even number the lower middle: outliers lie above.
-    const double most = kMostAbove * sorted[(sorted.size() - 1) / 2];
-    for (std::size_t i = 0; most > 0 && i < sorted.size(); ++i)
-        out.*kRates[i] = std::min(slowness[i], most) * nominal.*kRates[i];
-    return out;
+CostRates slower(const CostRates& rates, double times) {
+    return {rates.path_sample_s * times, rates.first_sample_s * times, rates.pixel_s * times,
+            rates.edge_sample_s * times, rates.record_path_s * times,  rates.record_s * times};
 }
 
 double surface_records_cost(const PilotFindings& found, const CostRates& rates,
@@ -107,16 +98,20 @@ double surface_records_cost(const PilotFindings& found, const CostRates& rates,
            (base + refined) * rates.record_s;
 }
 
+double record_noise_share(const SurfaceRecordsPlan& plan) {
+    const auto share = [](int paths) { return std::pow(512.0 / paths, kRecordSlope); };
+    const double refined = plan.levels > 0 ? kRefinedArea : 0;
+    return (1 - refined) * share(plan.record_paths) + refined * share(plan.refined_record_paths);
+}
+
 double surface_records_error(const PilotFindings& found, const SurfaceRecordsPlan& plan) {
-    const RecordErrors from =
-        found.records.value_or(RecordErrors{kTypicalPlan, kTypicalNoise, kTypicalBias, 0});
-    const double edges = std::max(plan.edge_spp + plan.pilot_spp, 1);
-    const double edges_then = std::max(from.plan.edge_spp + from.plan.pilot_spp, 1);
-    const double samples = edges / edges_then * plan.record_paths / from.plan.record_paths;
+    const RecordErrors from = found.records.value_or(kUsualErrors);
+    const double edges = std::max(plan.edge_spp + plan.pilot_spp, 1) / 128.0;
     const double halvings = std::log2(8.0 / plan.cell);
     const double bias = from.bias_at_8 * std::pow(kBiasPerHalving, -halvings) *
                         std::pow(kBiasPerLevel, -plan.levels);
-    return from.noise * std::pow(samples, -kNoiseSlope) + bias + from.unexplained;
+    return from.edge_noise * std::pow(edges, -kEdgeSlope) +
+           from.record_noise * record_noise_share(plan) + bias + from.unexplained;
 }
 
 Schedule plan_path(const PilotFindings& found, const CostRates& rates, double seconds) {
@@ -135,22 +130,23 @@ Schedule plan_path(const PilotFindings& found, const CostRates& rates, double se
 Schedule plan_surface_records(const PilotFindings& found, const CostRates& rates, double seconds) {
     Schedule best;
     best.is_path = false;
-    best.plan = scaled(surface_records_plan(kSteps[0]), 0.25);
-    best.predicted_error = std::numeric_limits<double>::infinity();
-    for (const int step : kSteps) {
-        const SurfaceRecordsPlan plan = surface_records_plan(step);
-        const double factor = factor_that_fits(found, rates, plan, seconds);
-        const bool is_last = step == std::end(kSteps)[-1];
-        if (factor == 0 || (factor > kMostFactor && !is_last)) continue;
-        const SurfaceRecordsPlan filled = scaled(plan, factor);
-        const double error = surface_records_error(found, filled);
-        if (error >= *best.predicted_error) continue;
-        best.plan = filled;
+    const auto consider = [&](const SurfaceRecordsPlan& plan) {
+        const double cost_s = surface_records_cost(found, rates, plan);
+        const double error = surface_records_error(found, plan);
+        const bool is_first = !best.predicted_error.has_value();
+        if (!is_first && (cost_s > seconds || error >= *best.predicted_error)) return;
+        best.plan = plan;
+        best.predicted_s = cost_s;
         best.predicted_error = error;
+    };
+    for (const Structure& structure : kStructures) {
+        for (const double ratio : kPathsPerSample) {
+            const auto plan_of = [&](double edge_spp) {
+                return plan_by(structure, edge_spp, ratio * edge_spp);
+            };
+            consider(filled(found, rates, plan_of, seconds));
+        }
     }
-    if (std::isinf(*best.predicted_error))
-        best.predicted_error = surface_records_error(found, best.plan);
-    best.predicted_s = surface_records_cost(found, rates, best.plan);
     return best;
 }
 

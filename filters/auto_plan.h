@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/grid.h"
-#include "filters/surface_records.h"
+#include "filters/surface_records_stages.h"
 
 namespace vecino {
 
@@ -25,16 +25,17 @@ struct CostRates {
 /// depend on the clock. rays_per_path: of path tracing.
 CostRates nominal_rates(double rays_per_path);
 
-// What a stage of surface_records costs before its first sample, in samples: measured at 512x512,
-// and scene by scene much the same.
-constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 6;
+/// Cells are halved where surfaces meet: with each level so many records for each that is there.
+constexpr double kRefinedShare = 0.75;
 
 /// Its bias falls so much with cells of half the side.
 constexpr double kBiasPerHalving = 8;
 
-/// Rates with none far above what the others say of the machine, held against the nominal ones: a
-/// stage that seems to take that long was interrupted by another program.
-CostRates without_outliers(const CostRates& rates, const CostRates& nominal);
+/// Its errors fall with samples and paths to these powers: Sobol points.
+constexpr double kEdgeSlope = 1.3, kRecordSlope = 1.25;
+
+/// Of a machine that takes so many times as long for everything.
+CostRates slower(const CostRates& rates, double times);
 
 /// Errors are means of squared differences of sRGB-encoded values in [0,1], as of psnr_float_db.
 struct PathErrors {
@@ -42,13 +43,19 @@ struct PathErrors {
     double slope = 1;  ///< error falls as spp to the power of -slope
 };
 
-/// What a small frame of surface_records says of its errors.
+/// What makes up the error of surface_records.
 struct RecordErrors {
-    SurfaceRecordsPlan plan;  ///< of that frame
-    double noise = 0;         ///< between frames of other seeds
+    double edge_noise = 0;    ///< by 128 samples of needy pixels
+    double record_noise = 0;  ///< by records of 512 paths
     double bias_at_8 = 0;     ///< by cells of 8 pixels
-    double unexplained = 0;   ///< against traced paths: neither noise nor the records' bias
+    double unexplained = 0;   ///< against traced paths: none of these
 };
+
+/// Of a usual scene, for what cannot be measured.
+constexpr RecordErrors kUsualErrors{0.25e-6, 0.8e-6, 1.2e-6, 0};
+
+/// The noise of a plan's records, held against that of records of 512 paths.
+double record_noise_share(const SurfaceRecordsPlan& plan);
 
 struct PilotFindings {
     double pixels = 0;               ///< of the frame that is wanted
@@ -74,7 +81,7 @@ struct Schedule {
 double surface_records_cost(const PilotFindings& found, const CostRates& rates,
                             const SurfaceRecordsPlan& plan);
 
-/// Predicted error of a plan; where the pilot was too short, that of a typical scene.
+/// Predicted error of a plan; what was not measured is that of a usual scene.
 double surface_records_error(const PilotFindings& found, const SurfaceRecordsPlan& plan);
 
 /// The best that each method can do in so many seconds, at least its least.

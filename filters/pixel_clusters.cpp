@@ -132,6 +132,15 @@ std::uint64_t PixelClusters::trace_row(const RecordTracer& tracer, int y, int sa
     return rays;
 }
 
+void PixelClusters::try_samples(const RecordTracer& tracer, Pixel at, int samples) const {
+    PilotBlock block;
+    PilotLight lights[kMostExactLights];
+    PilotSpill spill;
+    tracer.kernel.trace_pilot(tracer.task,
+                              {at.x, at.y, std::min(kPilotPixels, width_ - at.x), samples},
+                              {block, lights, spill, nullptr});
+}
+
 void PixelClusters::take_spill(const PilotSpill& spill, int x, int y) {
     for (int i = 0; i < spill.count; ++i) {
         ClusterList& list = make_list(x + spill.pixel[i], y);

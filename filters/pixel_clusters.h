@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/frame_planes.h"
 #include "core/grid.h"
 #include "core/record_task.h"
 
@@ -69,6 +70,9 @@ class PixelClusters {
     /// Returns rays. Threads may do so in different rows.
     std::uint64_t trace_row(const RecordTracer& tracer, int y, int samples,
                             FirstHitRecord* first_hits);
+
+    /// Traces first samples of kPilotPixels pixels from (x, y) on, to see how long it takes.
+    void try_samples(const RecordTracer& tracer, Pixel at, int samples) const;
 
   private:
     [[nodiscard]] std::size_t row(int y) const { return static_cast<std::size_t>(y - rows_.begin); }

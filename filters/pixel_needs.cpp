@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/pixel_needs.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <glm/geometric.hpp>
+#include <utility>
 
 #include "core/parallel.h"
 
 namespace vecino {
 namespace {
 
-constexpr float kLeastSamples = 16.0f;  ///< of a needy pixel
-
-// ---------------------------------------------------------------- which pixels
-
 /// Goes down rows, comparing each with the one above it.
 class NeedFinder {
   public:
-    NeedFinder(const NeedInputs& inputs, RowRange rows) : inputs_(inputs) {
+    NeedFinder(const TraceTask& task, const PixelClusters& clusters, RowRange rows)
+        : task_(task), clusters_(clusters) {
         look(rows.begin - 1, above_);
         look(rows.begin, own_);
         needs_.assign(width(), 0);
@@ -43,262 +37,26 @@ class NeedFinder {
     }
 
   private:
-    [[nodiscard]] std::size_t width() const {
-        return static_cast<std::size_t>(inputs_.clusters.width());
-    }
-    void look(int y, LookRow& row) const {
-        look_at_row(inputs_.tracer.task, inputs_.clusters, y, row);
-    }
+    [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(clusters_.width()); }
+    void look(int y, LookRow& row) const { look_at_row(task_, clusters_, y, row); }
 
-    const NeedInputs& inputs_;
+    const TraceTask& task_;
+    const PixelClusters& clusters_;
     LookRow above_, own_, below_;
     std::vector<std::int32_t> needs_;
 };
 
-NeedyRows find_needs(const NeedInputs& inputs, RowRange rows) {
+}  // namespace
+
+NeedyRows find_needs(const RecordTracer& tracer, const PixelClusters& clusters, RowRange rows) {
     constexpr std::size_t kRowsPerBlock = 16;
     const auto count = static_cast<std::size_t>(rows.end - rows.begin);
     NeedyRows needy(count);
-    for_each_block(count, kRowsPerBlock, inputs.tracer.threads, [&](BlockRange block) {
+    for_each_block(count, kRowsPerBlock, tracer.threads, [&](BlockRange block) {
         const auto row = [&](std::size_t r) { return rows.begin + static_cast<int>(r); };
-        NeedFinder finder(inputs, {row(block.begin), row(block.end)});
+        NeedFinder finder(tracer.task, clusters, {row(block.begin), row(block.end)});
         for (std::size_t r = block.begin; r < block.end; ++r) needy[r] = finder.next(row(r));
     });
-    return needy;
-}
-
-// ---------------------------------------------------------------- how many samples
-
-/// What is known of the light of a needy pixel.
-struct PixelEstimate {
-    glm::vec3 mean{0.0f};                    ///< radiance
-    glm::vec3 variance{0.0f};                ///< between its surfaces
-    glm::vec3 emitters[kMostExactLights]{};  ///< radiance that hangs on each emitter's visibility
-    float in_sight[kMostExactLights]{};      ///< share of it that is in sight
-    float picked = 0, picked_square = 0;     ///< luminance by picked emitters: sums
-    float samples = 0;
-};
-
-float luminance(glm::vec3 v) {
-    return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
-}
-
-glm::vec3 vector(const float (&v)[3]) {
-    return {v[0], v[1], v[2]};
-}
-
-class Estimator {
-  public:
-    explicit Estimator(const NeedInputs& inputs)
-        : inputs_(inputs),
-          task_(inputs.tracer.task),
-          picks_(task_.light_count > static_cast<std::uint32_t>(kMostExactLights)) {}
-
-    [[nodiscard]] PixelEstimate estimate(int x, int y) const {
-        PixelEstimate out;
-        glm::vec3 squares(0.0f);
-        inputs_.clusters.visit(x, y, [&](const Cluster& cluster) {
-            const ClusterMeans means = means_of(cluster);
-            const glm::vec3 light = light_of(cluster, means, x, y);
-            out.mean += light * cluster.count;
-            squares += light * light * cluster.count;
-            out.samples += cluster.count;
-            if (picks_) {
-                add_picked(cluster, means, out);
-            } else {
-                add_emitters(cluster, means, out);
-            }
-        });
-        const float share = 1.0f / out.samples;
-        out.mean *= share;
-        out.variance = glm::max(squares * share - out.mean * out.mean, glm::vec3(0.0f));
-        for (std::uint32_t i = 0; !picks_ && i < task_.light_count; ++i) {
-            const float whole = luminance(out.emitters[i]);
-            out.in_sight[i] = whole > 0 ? out.in_sight[i] / whole : 0.0f;
-            out.emitters[i] *= share;
-        }
-        return out;
-    }
-
-  private:
-    [[nodiscard]] glm::vec3 light_of(const Cluster& cluster, const ClusterMeans& means, int x,
-                                     int y) const {
-        if (cluster.object < 0 || task_.max_depth < 1) return means.emission;
-        RecordValue records;
-        record_light(inputs_.records, {x, y, cluster.object, means.position, means.normal},
-                     records);
-        const glm::vec3 indirect(records[0] + records[3], records[1] + records[4],
-                                 records[2] + records[5]);
-        return means.emission + means.albedo * (direct_light(task_, cluster) + indirect);
-    }
-
-    void add_emitters(const Cluster& cluster, const ClusterMeans& means, PixelEstimate& out) const {
-        for (std::uint32_t i = 0; i < task_.light_count; ++i) {
-            const LightSums& sums = cluster.lights[i];
-            const glm::vec3 whole = means.albedo * vector(task_.lights[i].radiance) * sums.exact;
-            out.emitters[i] += whole;
-            out.in_sight[i] += luminance(whole) * share_in_sight(sums);
-        }
-    }
-
-    static void add_picked(const Cluster& cluster, const ClusterMeans& means, PixelEstimate& out) {
-        const float albedo = luminance(means.albedo);
-        out.picked += albedo * luminance(vector(cluster.picked));
-        out.picked_square += albedo * albedo * cluster.picked_square;
-    }
-
-    const NeedInputs& inputs_;
-    const TraceTask& task_;
-    bool picks_;
-};
-
-/// How much sRGB changes with linear light; what is too bright to be shown counts less and less.
-float srgb_slope(float light) {
-    if (light < 0.0031308f) return 12.92f;
-    const float slope = 0.4395833f * std::pow(light, -0.5833333f);
-    return light > 1.0f ? slope / (light * light) : slope;
-}
-
-/// Standard deviation of one sample of a pixel in sRGB, from the pixel and its needy neighbours.
-class Spread {
-  public:
-    /// first_samples: of every pixel.
-    Spread(const PixelEstimate& own, std::uint8_t needs, int lights, bool picks)
-        : own_(own),
-          needs_(needs),
-          lights_(lights),
-          picks_(picks),
-          weight_(own.samples),
-          mean_(own.mean * own.samples),
-          square_((own.variance + own.mean * own.mean) * own.samples),
-          picked_(own.picked),
-          picked_square_(own.picked_square),
-          picked_samples_(own.samples) {
-        for (int i = 0; i < lights; ++i) in_sight_[i] = own.in_sight[i] * own.samples;
-    }
-
-    void add_neighbour(const PixelEstimate& other) {
-        constexpr float kWeight = 0.25f;  // of one sample
-        weight_ += kWeight;
-        mean_ += other.mean * kWeight;
-        square_ += (other.variance + other.mean * other.mean) * kWeight;
-        for (int i = 0; i < lights_; ++i) in_sight_[i] += other.in_sight[i] * kWeight;
-        picked_ += other.picked;
-        picked_square_ += other.picked_square;
-        picked_samples_ += other.samples;
-    }
-
-    [[nodiscard]] float srgb() const {
-        const glm::vec3 mean = mean_ / weight_;
-        glm::vec3 variance(0.0f);
-        if ((needs_ & kNeedsCoverage) != 0)
-            variance += glm::max(square_ / weight_ - mean * mean, glm::vec3(0.0f));
-        for (int i = 0; (needs_ & kNeedsShadow) != 0 && i < lights_; ++i) {
-            const float v = (in_sight_[i] + 0.25f) / (weight_ + 0.5f);
-            variance += own_.emitters[i] * own_.emitters[i] * (v * (1.0f - v));
-        }
-        if (picks_) {
-            const float picked = picked_ / picked_samples_;
-            variance +=
-                glm::vec3(std::max(picked_square_ / picked_samples_ - picked * picked, 0.0f));
-        }
-        float sum = 0;
-        for (int c = 0; c < 3; ++c) {
-            const float slope = srgb_slope(mean[c]);
-            sum += variance[c] * slope * slope;
-        }
-        return std::sqrt(sum);
-    }
-
-  private:
-    const PixelEstimate& own_;
-    std::uint8_t needs_;
-    int lights_;
-    bool picks_;
-    float weight_;
-    glm::vec3 mean_, square_;
-    float in_sight_[kMostExactLights]{};
-    float picked_, picked_square_, picked_samples_;
-};
-
-using EstimateRows = std::vector<std::vector<PixelEstimate>>;
-using SpreadRows = std::vector<std::vector<float>>;
-
-EstimateRows estimate_all(const NeedInputs& inputs, RowRange rows, const NeedyRows& needy) {
-    EstimateRows estimates(needy.size());
-    for_each_block(needy.size(), 1, inputs.tracer.threads, [&](BlockRange block) {
-        const std::size_t r = block.begin;
-        const Estimator estimator(inputs);
-        estimates[r].reserve(needy[r].size());
-        for (const NeedyPixel& pixel : needy[r])
-            estimates[r].push_back(estimator.estimate(pixel.x, rows.begin + static_cast<int>(r)));
-    });
-    return estimates;
-}
-
-/// Calls visit(index) for the pixels of a row within one column of x.
-template <class Visit>
-void visit_around(const std::vector<NeedyPixel>& row, int x, const Visit& visit) {
-    auto i = std::ranges::lower_bound(row, x - 1, {}, &NeedyPixel::x);
-    for (; i != row.end() && i->x <= x + 1; ++i) visit(static_cast<std::size_t>(i - row.begin()));
-}
-
-SpreadRows spread_all(const NeedInputs& inputs, const NeedyRows& needy,
-                      const EstimateRows& estimates) {
-    const TraceTask& task = inputs.tracer.task;
-    const bool picks = task.light_count > static_cast<std::uint32_t>(kMostExactLights);
-    const int lights = picks ? 0 : static_cast<int>(task.light_count);
-    SpreadRows spreads(needy.size());
-    for_each_block(needy.size(), 1, inputs.tracer.threads, [&](BlockRange block) {
-        const std::size_t r = block.begin;
-        spreads[r].reserve(needy[r].size());
-        for (std::size_t i = 0; i < needy[r].size(); ++i) {
-            const NeedyPixel& pixel = needy[r][i];
-            Spread spread(estimates[r][i], pixel.needs, lights, picks);
-            for (std::size_t n = r > 0 ? r - 1 : 0; n < std::min(r + 2, needy.size()); ++n) {
-                visit_around(needy[n], pixel.x, [&](std::size_t k) {
-                    if (n != r || k != i) spread.add_neighbour(estimates[n][k]);
-                });
-            }
-            spreads[r].push_back(spread.srgb());
-        }
-    });
-    return spreads;
-}
-
-double mean_of(const SpreadRows& spreads) {
-    double sum = 0;
-    std::size_t count = 0;
-    for (const auto& row : spreads) {
-        for (const float value : row) sum += static_cast<double>(value);
-        count += row.size();
-    }
-    return count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
-/// Powers of two: Sobol points are best in such numbers.
-std::uint32_t power_of_two_near(float samples) {
-    return 1u << static_cast<unsigned>(std::lround(std::log2(samples)));
-}
-
-}  // namespace
-
-NeedyRows find_needy_pixels(const NeedInputs& inputs, RowRange rows) {
-    if (inputs.plan.edge_spp == 0)
-        return NeedyRows(static_cast<std::size_t>(rows.end - rows.begin));
-    NeedyRows needy = find_needs(inputs, rows);
-    const SpreadRows spreads = spread_all(inputs, needy, estimate_all(inputs, rows, needy));
-    const double mean = mean_of(spreads);
-    if (!(mean > 0)) return needy;
-    const auto edge_spp = static_cast<float>(inputs.plan.edge_spp);
-    const float scale = edge_spp / static_cast<float>(mean);
-    for (std::size_t r = 0; r < needy.size(); ++r) {
-        for (std::size_t i = 0; i < needy[r].size(); ++i) {
-            const float wanted = std::clamp(spreads[r][i] * scale, kLeastSamples,
-                                            std::max(kLeastSamples, kLeastSamples * edge_spp));
-            needy[r][i].samples = power_of_two_near(wanted);
-        }
-    }
     return needy;
 }
 

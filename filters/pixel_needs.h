@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which pixels want more samples than the first ones, and how many: those at edges of surfaces and
-// of albedo, and those in half-shadow, in proportion to the error that is expected of them.
+// Which pixels want more samples than the first ones: those at edges of surfaces and of albedo, and
+// those in half-shadow.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,6 @@
 
 #include "filters/pixel_clusters.h"
 #include "filters/pixel_looks.h"
-#include "filters/records.h"
 
 namespace vecino {
 
@@ -22,15 +21,7 @@ struct NeedyPixel {
 /// The needy pixels of rows, in order; row y of the image is number y - begin.
 using NeedyRows = std::vector<std::vector<NeedyPixel>>;
 
-/// What decides.
-struct NeedInputs {
-    const RecordTracer& tracer;
-    const PixelClusters& clusters;
-    const RecordMap& records;
-    const SurfaceRecordsPlan& plan;
-};
-
 /// Of rows of the clusters; their neighbours are looked at where there are any.
-NeedyRows find_needy_pixels(const NeedInputs& inputs, RowRange rows);
+NeedyRows find_needs(const RecordTracer& tracer, const PixelClusters& clusters, RowRange rows);
 
 }  // namespace vecino

@@ -7,7 +7,10 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "core/color.h"
 #include "core/parallel.h"
+#include "core/timing.h"
+#include "filters/surface_records_stages.h"
 
 namespace vecino {
 
@@ -206,16 +209,37 @@ RecordLevel halve(const RecordLevel& level, int width, RowRange rows, double tau
     return next;
 }
 
+/// Of a record's light where its pixel shows it, in sRGB; of what is too bright to be shown none.
+double shown_noise(const RecordInputs& inputs, const Record& record) {
+    const Cluster cluster =
+        inputs.clusters.first_cluster(static_cast<int>(record.x), static_cast<int>(record.y));
+    if (cluster.object != record.object) return 0;  // an edge: it has noise of its own
+    const ClusterMeans means = means_of(cluster);
+    const glm::vec3 direct = direct_light(inputs.tracer.task, cluster);
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) {
+        const std::size_t i = static_cast<std::size_t>(c);
+        const float light = direct[c] + record.light[i] + record.light[i + 3];
+        const float shown = means.emission[c] + means.albedo[c] * light;
+        if (!(shown < 1)) continue;
+        const float slope = means.albedo[c] * srgb_slope(shown);
+        sum += static_cast<double>(slope * slope * record.variance[c]);
+    }
+    return sum / 3;
+}
+
 }  // namespace
 
-RecordWork gather_records(const RecordTracer& tracer, const PixelClusters& clusters,
-                          const SurfaceRecordsPlan& plan) {
+RecordWork gather_records(const RecordInputs& inputs, const SurfaceRecordsPlan& plan,
+                          const CountRecords& count) {
+    const auto& [tracer, clusters] = inputs;
     RecordWork work;
     work.map.channels = tracer.task.has_background ? kRecordChannels : 3;
     RecordLevel level(plan.cell, clusters.width(), clusters.rows());
     std::ranges::fill(level.active, std::uint8_t{1});
     for (int number = 0;; ++number) {
         const Candidates candidates = place_records(clusters, level, tracer.threads);
+        if (count) count(number, candidates.size());
         gather_level(tracer, candidates,
                      number == 0 ? plan.record_paths : plan.refined_record_paths, level, work);
         work.map.levels.push_back(std::move(level));
@@ -224,6 +248,31 @@ RecordWork gather_records(const RecordTracer& tracer, const PixelClusters& clust
         level = halve(made, clusters.width(), clusters.rows(), plan.refine_tau);
         if (std::ranges::none_of(level.active, [](std::uint8_t a) { return a != 0; })) return work;
     }
+}
+
+RecordTrial try_records(const RecordInputs& inputs, int number) {
+    constexpr std::size_t kCells = 64, kRun = 8, kApart = 5;  // neighbours, as records are made in
+    constexpr int kPaths = 32;
+    RecordLevel level(16, inputs.clusters.width(), inputs.clusters.rows());
+    const std::size_t step = std::max(level.active.size() * kRun / kCells, kRun);
+    const std::size_t first = kApart * kRun * static_cast<std::size_t>(number);
+    double cells = 0;
+    for (std::size_t i = 0; i < level.active.size(); ++i) {
+        level.active[i] = (first + i) % step < kRun ? 1 : 0;
+        cells += level.active[i];
+    }
+    const double one_of = static_cast<double>(level.active.size()) / std::max(cells, 1.0);
+    const RecordTracer tracer{inputs.tracer.task, inputs.tracer.kernel, 1};
+    const Candidates candidates = place_records(inputs.clusters, level, tracer.threads);
+    RecordWork work;
+    const ThreadStopwatch watch;
+    gather_level(tracer, candidates, kPaths, level, work);
+    const double seconds = watch.seconds();
+    const auto records = std::max(static_cast<double>(candidates.size()), 1.0);
+    double noise = 0;
+    for (const Record& record : level.records) noise += shown_noise(inputs, record);
+    return {static_cast<double>(candidates.size()) * one_of,
+            seconds / (records * (kPaths + kRecordStart)), noise / records, kPaths};
 }
 
 }  // namespace vecino

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -84,9 +85,28 @@ struct RecordWork {
     std::uint64_t dropped = 0;
 };
 
-/// Places records for all surfaces that clusters show and gathers their light.
-RecordWork gather_records(const RecordTracer& tracer, const PixelClusters& clusters,
-                          const SurfaceRecordsPlan& plan);
+/// What records are made of.
+struct RecordInputs {
+    const RecordTracer& tracer;
+    const PixelClusters& clusters;
+};
+
+/// Called with the number of a level and of its records before their light is gathered.
+using CountRecords = std::function<void(int level, std::size_t records)>;
+
+/// Places records for all surfaces that clusters show and gathers their light. count, if there is
+/// one, may change the paths of the plan.
+RecordWork gather_records(const RecordInputs& inputs, const SurfaceRecordsPlan& plan,
+                          const CountRecords& count);
+
+/// Records of a few cells, to see how long they take.
+struct RecordTrial {
+    double records_at_16;  ///< of all cells, were their sides 16 pixels; extrapolated
+    double path_s;         ///< of one thread, by paths + kRecordStart
+    double noise;          ///< mean square in sRGB of what their light adds to pixels
+    int paths;             ///< of each
+};
+RecordTrial try_records(const RecordInputs& inputs, int number);
 
 /// Where a record is: what a sample of a pixel hits.
 struct RecordSeed {

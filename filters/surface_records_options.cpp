@@ -129,11 +129,9 @@ std::span<const MethodOption> surface_records_rows() {
     return kRows;
 }
 
-MethodRender run_surface_records(const MethodRequest& request, const Progress& progress) {
-    const SurfaceRecordsPlan plan =
-        plan_of(request.parameters.surface_records, request.settings.spp);
-    StagedRender staged = render_in_stages(request.scene, request.settings, plan, progress);
+MethodRender method_render(StagedRender staged) {
     const StageTimes& times = staged.times;
+    const SurfaceRecordsPlan& plan = staged.plan;
     MethodRender out{.render = std::move(staged.render)};
     out.reconstruct_s = times.fit_s + times.needs_s + times.resolve_s;
     out.render.statistics.trace_s -= out.reconstruct_s;
@@ -150,7 +148,14 @@ MethodRender run_surface_records(const MethodRequest& request, const Progress& p
     out.stage_s = {{"pilot", times.pilot_s},     {"records", times.records_s},
                    {"fit", times.fit_s},         {"needs", times.needs_s},
                    {"samples", times.samples_s}, {"resolve", times.resolve_s}};
+    if (times.trials_s > 0) out.stage_s["trials"] = times.trials_s;
     return out;
+}
+
+MethodRender run_surface_records(const MethodRequest& request, const Progress& progress) {
+    const SurfaceRecordsPlan plan =
+        plan_of(request.parameters.surface_records, request.settings.spp);
+    return method_render(render_in_stages(request.scene, request.settings, {plan}, progress));
 }
 
 }  // namespace vecino

@@ -7,8 +7,15 @@
 
 namespace vecino {
 
+class Pace;
+
+// What a stage of surface_records costs before its first sample, in samples: measured at 512x512,
+// and scene by scene much the same.
+constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 6;
+
 /// Seconds by stage.
 struct StageTimes {
+    double trials_s = 0;   ///< of a Pace
     double pilot_s = 0;    ///< first samples of all pixels
     double records_s = 0;  ///< light of records
     double fit_s = 0;      ///< polynomials around records
@@ -29,9 +36,16 @@ struct StagedRender {
     Render render;
     StageTimes times;
     StageCounts counts;
+    SurfaceRecordsPlan plan;  ///< as it came to be
+};
+
+/// How a frame is made: by a plan, or by one that a pace chooses in the course of it.
+struct StagedRun {
+    SurfaceRecordsPlan plan;
+    Pace* pace = nullptr;
 };
 
 StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings,
-                              const SurfaceRecordsPlan& plan, const Progress& progress);
+                              const StagedRun& run, const Progress& progress);
 
 }  // namespace vecino

@@ -245,7 +245,7 @@ TEST_CASE("bands of rows leave no trace in a frame", "[surface_records]") {
     RenderSettings settings = small_settings({8200, 330}, 1);
     settings.planes = {Plane::radiance};
     const SurfaceRecordsPlan plan{1, 0, 16, 0, 16, 16, 0.85, 0.15};
-    const StagedRender banded = render_in_stages(scene, settings, plan, {});
+    const StagedRender banded = render_in_stages(scene, settings, {plan}, {});
     CHECK(banded.counts.bands > 1);
     const Image& image = banded.render.frame.radiance;
     // Within a band and across its border, rows differ alike.
@@ -361,7 +361,7 @@ TEST_CASE("where the time of surface records goes", "[.][benchmark]") {
             StageTimes least;
             for (int repeat = 0; repeat < 5; ++repeat) {
                 const StageTimes t =
-                    render_in_stages(scene, settings, surface_records_plan(spp), {}).times;
+                    render_in_stages(scene, settings, {surface_records_plan(spp)}, {}).times;
                 const auto keep = [repeat](double& held, double now) {
                     held = repeat == 0 ? now : std::min(held, now);
                 };

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/pace.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vecino {
+namespace {
+
+// Of a frame's time: more first samples than this leave too little for what they find.
+constexpr double kPilotShare = 0.2;
+constexpr int kMostPilotSpp = 32;
+
+// Of what is left, kept back: clocks and other programs are not exact.
+constexpr double kReserve = 0.01;
+
+// Of a pixel, at the very end.
+constexpr double kResolve_s = 45e-9;
+
+// As few paths of a record do; the least may take somewhat longer than there is time.
+constexpr int kLeastPaths = 64;
+constexpr double kGraceShare = 0.08, kGrace_s = 0.02;
+
+constexpr int kMostPaths = 1 << 20, kMostEdgeSpp = 65536;
+
+/// Paths in whole packets.
+int whole_packets(double paths) {
+    constexpr double kPacket = 16;
+    return static_cast<int>(
+        std::clamp(std::floor(paths / kPacket) * kPacket, double{kLeastPaths}, double{kMostPaths}));
+}
+
+int geometric_mean(int low, int high) {
+    return static_cast<int>(std::sqrt(double{1} * low * high));
+}
+
+}  // namespace
+
+double quickest(const Trial& trial) {
+    double seconds = trial(0);
+    for (int i = 1; i < 4; ++i) seconds = std::min(seconds, trial(i));
+    return seconds;
+}
+
+Pace::Pace(double seconds, int threads, const PilotFindings& found)
+    : seconds_(seconds),
+      threads_(threads),
+      found_(found),
+      rates_(nominal_rates(1)),
+      until_s_(seconds) {}
+
+void Pace::begin(double share_of_frame) {
+    watch_ = {};
+    found_.pixels *= share_of_frame;
+    until_s_ = (1 - kReserve) * share_of_frame * seconds_;
+}
+
+void Pace::take_stage(double work_s, double seconds) {
+    constexpr double kMost = 16;
+    // What starts a stage is much of a short one.
+    constexpr double kShort_s = 0.03, kMostOfShort = 1.25;
+    const double most = seconds < kShort_s ? kMostOfShort : kMost;
+    if (work_s > 0) slowness_ = std::clamp(seconds * threads_ / work_s, 0.5, most);
+}
+
+void Pace::choose_pilot(double sample_s, SurfaceRecordsPlan& plan) {
+    const double all_s = found_.pixels * sample_s * per_work_s();
+    plan.pilot_spp = 1;
+    while (plan.pilot_spp < kMostPilotSpp && 2 * plan.pilot_spp * all_s <= kPilotShare * left_s())
+        plan.pilot_spp *= 2;
+}
+
+void Pace::choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan) {
+    found_.needy_pixels = here.needy_pixels;
+    found_.records_at_8 = here.records_at_16 * found_.record_growth;
+    if (!found_.records) found_.records = kUsualErrors;
+    if (here.record_noise > 0) found_.records->record_noise = here.record_noise;
+    rates_.first_sample_s = 0;  // they are done
+    rates_.record_path_s = here.path_s * per_work_s();
+    rates_.edge_sample_s = here.sample_s * per_work_s();
+    const int pilot_spp = plan.pilot_spp;
+    plan = plan_surface_records(found_, rates_, left_s()).plan;
+    plan.pilot_spp = pilot_spp;
+    PilotFindings records = found_;
+    records.pixels = records.needy_pixels = 0;
+    const double records_s = surface_records_cost(records, rates_, plan);
+    const double all_s = surface_records_cost(found_, rates_, plan);
+    records_until_s_ = watch_.seconds() + std::max(left_s(), 0.0) * records_s / all_s;
+}
+
+void Pace::choose_paths(int level, std::size_t records, SurfaceRecordsPlan& plan) {
+    if (records == 0 || level > 1) return;  // all halved cells have as many paths
+    // Levels to come have about so many records for each of this one, with so many paths.
+    const double finer =
+        level == 0 ? kRefinedShare * plan.levels * plan.refined_record_paths / plan.record_paths
+                   : plan.levels - level;
+    const double path_s = static_cast<double>(records) * (1 + finer) * rates_.record_path_s;
+    const double paths = (records_until_s_ - watch_.seconds()) / path_s - kRecordStart;
+    int& chosen = level == 0 ? plan.record_paths : plan.refined_record_paths;
+    const int planned = chosen;
+    chosen = whole_packets(std::clamp(paths, planned / 4.0, planned * 4.0));
+    if (level == 0) {
+        plan.refined_record_paths =
+            whole_packets(static_cast<double>(chosen) * plan.refined_record_paths / planned);
+    }
+}
+
+void Pace::choose_edges(const std::function<double(int)>& cost, double unit_s,
+                        SurfaceRecordsPlan& plan) {
+    const double per_unit_s = unit_s * per_work_s();
+    const double left = left_s() - found_.pixels * kResolve_s;
+    const double grace = std::max(kGraceShare * until_s_, kGrace_s);
+    const auto most_in = [&](double seconds) {
+        int low = 1, high = kMostEdgeSpp;
+        while (high - low > 1 + low / 64) {
+            const int middle = std::clamp(geometric_mean(low, high), low + 1, high - 1);
+            (cost(middle) * per_unit_s <= seconds ? low : high) = middle;
+        }
+        return low;
+    };
+    // Records may have taken longer than was thought: then it pays to be a little late.
+    const int due = std::max(plan.edge_spp / 2, kLeastEdgeSpp);
+    plan.edge_spp = std::max(most_in(left), std::min(most_in(left + grace), due));
+}
+
+}  // namespace vecino

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The clock of surface_records: while a frame is made, what is still open of its plan is chosen by
+// what the machine has shown so far, so that the frame is done in time. What comes out is a plan
+// like any other: a frame depends on it alone, and not on how it was found.
+#pragma once
+
+#include <functional>
+
+#include "core/timing.h"
+#include "filters/auto_plan.h"
+
+namespace vecino {
+
+/// Work done on a few places of a frame to see how long it takes, and thrown away. Takes the number
+/// of the trial, for other places each time. Returns seconds of one thread for one unit of work: a
+/// thread's own time, since what other programs take of so short a while says nothing.
+using Trial = std::function<double(int)>;
+
+/// Fewer samples of needy pixels than this save little time and cost much.
+constexpr int kLeastEdgeSpp = 16;
+
+/// Of a few trials that which was disturbed least.
+double quickest(const Trial& trial);
+
+/// What is known once first samples are there, and a few more were tried.
+struct PaceFindings {
+    double needy_pixels = 0;
+    double records_at_16 = 0;  ///< with cells of 16 pixels
+    double record_noise = 0;   ///< as of RecordErrors
+    double path_s = 0;         ///< one path of a record, on one thread
+    double sample_s = 0;       ///< one further sample of a needy pixel, on one thread
+};
+
+class Pace {
+  public:
+    /// seconds: from begin() until the frame is done, by so many threads. found: what is known of
+    /// errors, and the size.
+    Pace(double seconds, int threads, const PilotFindings& found);
+
+    /// What a paced frame begins with; all of it but refine_tau may change.
+    static SurfaceRecordsPlan first_plan() { return {1, 16, 16, 0, 64, 64, 1.0, 0.15}; }
+
+    /// The clock starts. Only so much of the frame is done now; the rest takes as much of the time
+    /// as its share.
+    void begin(double share_of_frame);
+
+    /// What the machine makes of its threads: a stage of so much work, by a trial, took so long.
+    void take_stage(double work_s, double seconds);
+
+    /// sample_s: one first sample of a pixel, on one thread.
+    void choose_pilot(double sample_s, SurfaceRecordsPlan& plan);
+    /// All but pilot_spp, as far as can be told.
+    void choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan);
+    /// Paths for the records of a level, now that they are counted.
+    void choose_paths(int level, std::size_t records, SurfaceRecordsPlan& plan);
+    /// The last that is open. cost: units of work that edge samples, so many on average, take;
+    /// unit_s: one of these, on one thread.
+    void choose_edges(const std::function<double(int)>& cost, double unit_s,
+                      SurfaceRecordsPlan& plan);
+
+  private:
+    /// Of the frame, for a second of one thread's work.
+    [[nodiscard]] double per_work_s() const { return slowness_ / threads_; }
+    [[nodiscard]] double left_s() const { return until_s_ - watch_.seconds(); }
+
+    Stopwatch watch_;
+    double seconds_;
+    int threads_;
+    double slowness_ = 1;  ///< of threads that run side by side, and with other programs
+    PilotFindings found_;
+    CostRates rates_{};
+    double until_s_;
+    double records_until_s_ = 0;
+};
+
+}  // namespace vecino
