@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "eval/commands.h"
 #include "eval/render_options.h"
 
 namespace vecino {
@@ -338,6 +339,11 @@ std::string convergence_table(std::span<const ConvergenceCurve> curves) {
     }
     return table + "speed-up: time to the same relMSE as at that spp, of light found by chance " +
            "with independent samples over this; e: it is extrapolated along its slope\n";
+}
+
+std::string factor_text(double factor) {
+    const int decimals = factor < 10 ? 2 : factor < 100 ? 1 : 0;
+    return "× " + number_text(factor, decimals);
 }
 
 double error_in_db(double error) {

@@ -104,6 +104,9 @@ std::string convergence_table(std::span<const ConvergenceCurve> curves);
 /// relMSE in decibels: higher is better.
 double error_in_db(double error);
 
+/// "× 81.2": three digits, since more would be read as more than it is.
+std::string factor_text(double factor);
+
 /// "-1.02 +-0.03"; "-" without a fit.
 std::string slope_text(const std::optional<PowerLaw>& law);
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "core/error.h"
 #include "eval/report_raster.h"
@@ -33,8 +34,8 @@ constexpr glm::u8vec3 kColours[] = {{26, 29, 33},  {11, 107, 176}, {185, 120, 0}
 struct Point {
     double time_s, psnr_db;
     const MethodStyle* style;
-    std::string curve;  ///< points of path tracing with the same one are joined, by growing spp
-    int spp;
+    std::string curve;  ///< points with the same one are joined, by growing time; may be empty
+    std::string label;  ///< of the curve
 };
 
 struct Axes {
@@ -60,19 +61,43 @@ TextStyle text_style(glm::u8vec3 colour, bool bold = false) {
 }
 
 bool is_shown(const ReportData& data, const GroupSummary& group) {
-    if (!group.psnr_float_db || !(group.time_s > 0)) return false;
+    if (!group.psnr_float_db || !(group.work_s() > 0)) return false;
     const auto variants = variants_of(data, group);
     const bool in_first = std::ranges::find(variants, std::size_t{0}) != variants.end();
     return !data.reproduction || in_first || group.method == "path";
 }
 
+/// Samplers, where path tracing has several; it is told apart by how it finds light anyhow.
+bool samplers_vary(const ReportData& data) {
+    std::set<std::string> samplers;
+    for (const GroupSummary& group : data.groups) {
+        if (group.method == "path") samplers.insert(group.params.value("sampler", ""));
+    }
+    return samplers.size() > 1;
+}
+
+/// What is joined: results that differ in the work that they were given alone. Schemes, of which
+/// there are many at one spp, are not.
+std::string curve_of(const GroupSummary& group) {
+    const bool is_scheme = group.params.contains("window") || group.params.contains("reduction");
+    if (is_scheme) return "";
+    nlohmann::json params = group.params;
+    for (const char* key : {"spp", "spp_asked", "seed", "budget", "time_budget"}) params.erase(key);
+    return group.method + params.dump();
+}
+
 std::map<std::string, std::vector<Point>> points_by_scene(const ReportData& data) {
+    const bool names_sampler = samplers_vary(data);
     std::map<std::string, std::vector<Point>> points;
     for (const GroupSummary& group : data.groups) {
         if (!is_shown(data, group)) continue;
-        points[group.scene].push_back(
-            {group.time_s, group.psnr_float_db->mean, &data.style_of(group.method),
-             group.params.value("light_sampling", ""), group.params.value("spp", 0)});
+        std::string label;
+        if (group.method == "path") {
+            label = group.params.value("light_sampling", "");
+            if (names_sampler) label += ", " + group.params.value("sampler", "");
+        }
+        points[group.scene].push_back({group.work_s(), group.psnr_float_db->mean,
+                                       &data.style_of(group.method), curve_of(group), label});
     }
     return points;
 }
@@ -143,19 +168,27 @@ void draw_marker(Grid<glm::u8vec3>& picture, const MethodStyle& style, cv::Point
 
 void draw_curves(Grid<glm::u8vec3>& picture, std::vector<Point> points, const Axes& axes,
                  cv::Point corner) {
-    std::ranges::sort(points, {}, &Point::spp);
-    std::map<std::string, cv::Point> last;
+    std::ranges::sort(points, {}, &Point::time_s);
+    std::map<std::string, const Point*> last;
+    const auto place = [&](const Point& p) { return axes.at(p.time_s, p.psnr_db, corner); };
     for (const Point& point : points) {
-        if (point.style->method != "path") continue;
-        const cv::Point at = axes.at(point.time_s, point.psnr_db, corner);
-        if (const auto before = last.find(point.curve); before != last.end())
-            cv::line(view(picture), before->second, at, scalar(kSoftInk), kScale, cv::LINE_AA);
-        last[point.curve] = at;
+        if (point.curve.empty()) continue;
+        const glm::u8vec3 colour = point.style->colour == 0
+                                       ? kSoftInk
+                                       : kColours[static_cast<std::size_t>(point.style->colour)];
+        if (const auto before = last.find(point.curve); before != last.end()) {
+            cv::line(view(picture), place(*before->second), place(point), scalar(colour), kScale,
+                     cv::LINE_AA);
+        }
+        last[point.curve] = &point;
     }
-    for (const auto& [name, at] : last)
-        draw_text(picture, name,
-                  {at.x - text_width(name, text_style(kSoftInk)) - 8 * kScale, at.y - 6 * kScale},
-                  text_style(kSoftInk));
+    for (const auto& [name, point] : last) {
+        const cv::Point at = place(*point);
+        draw_text(
+            picture, point->label,
+            {at.x - text_width(point->label, text_style(kSoftInk)) - 8 * kScale, at.y - 6 * kScale},
+            text_style(kSoftInk));
+    }
 }
 
 /// Below a level that no scheme with one value per low-resolution pixel can pass.
@@ -179,11 +212,19 @@ void draw_ceilings(Grid<glm::u8vec3>& picture, const ReportData& data, const std
 void draw_legend(Grid<glm::u8vec3>& picture, const ReportData& data, int top) {
     int x = kLeft;
     for (const MethodStyle& style : data.methods) {
-        if (style.method == "blocky_ceiling") continue;
+        const bool is_drawn = std::ranges::find(data.groups, style.method, &GroupSummary::method) !=
+                              data.groups.end();
+        if (style.method == "blocky_ceiling" || !is_drawn) continue;
         draw_marker(picture, style, {x, top - 4 * kScale});
         draw_text(picture, style.method, {x + 10 * kScale, top}, text_style(kInk));
         x += 10 * kScale + text_width(style.method, text_style(kInk)) + 22 * kScale;
     }
+}
+
+/// Charts side by side: up to three, or four in two rows, and so on.
+int columns_of(std::size_t charts) {
+    const auto count = static_cast<int>(charts);
+    return count <= 3 ? count : static_cast<int>(std::ceil(std::sqrt(count)));
 }
 
 }  // namespace
@@ -193,20 +234,24 @@ Grid<glm::u8vec3> chart_raster(const ReportData& data) {
     if (scenes.empty())
         throw Error(ExitCode::file, data.directory + ": holds no result to draw a chart of");
     const Axes axes = axes_of(data, scenes);
-    const int width = static_cast<int>(scenes.size()) * (kLeft + kPlotWidth) + 20 * kScale;
-    Grid<glm::u8vec3> picture({width, kTop + kPlotHeight + kFoot + kLegendLine}, kPaper);
-    cv::Point corner(kLeft, kTop);
+    const int columns = columns_of(scenes.size());
+    const int rows = (static_cast<int>(scenes.size()) + columns - 1) / columns;
+    const cv::Point step(kLeft + kPlotWidth, kTop + kPlotHeight + kFoot);
+    Grid<glm::u8vec3> picture({columns * step.x + 20 * kScale, rows * step.y + kLegendLine},
+                              kPaper);
+    int number = 0;
     for (const auto& [scene, points] : scenes) {
-        draw_text(picture, scene + ": psnr_float_db against time",
+        const cv::Point corner(kLeft + number % columns * step.x, kTop + number / columns * step.y);
+        ++number;
+        draw_text(picture, scene + ": psnr_float_db against time of tracing and reconstruction",
                   {corner.x, corner.y - 12 * kScale}, text_style(kInk, true));
         draw_grid(picture, axes, corner);
         draw_ceilings(picture, data, scene, {axes, corner});
         draw_curves(picture, points, axes, corner);
         for (const Point& point : points)
             draw_marker(picture, *point.style, axes.at(point.time_s, point.psnr_db, corner));
-        corner.x += kLeft + kPlotWidth;
     }
-    draw_legend(picture, data, kTop + kPlotHeight + kFoot);
+    draw_legend(picture, data, rows * step.y);
     return picture;
 }
 

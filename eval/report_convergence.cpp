@@ -36,12 +36,6 @@ constexpr const char* kSpeedUpNote =
     "measured speed-up is the geometric mean over the range of errors in which both were measured; "
     "errors are in decibels, −10 log10 of relMSE.";
 
-/// "× 1,234" would be read as more than it is: three digits.
-std::string factor_text(double factor) {
-    const int decimals = factor < 10 ? 2 : factor < 100 ? 1 : 0;
-    return "× " + number_text(factor, decimals);
-}
-
 /// "−1.02 ± 0.03"
 std::string slope_html(const std::optional<PowerLaw>& law) {
     if (!law) return "–";

@@ -11,6 +11,7 @@
 #include "eval/cinema.h"
 #include "eval/commands.h"
 #include "eval/crop_mosaic.h"
+#include "eval/report_raster.h"
 #include "eval/report_tables.h"
 #include "eval/run_directory.h"
 
@@ -49,10 +50,11 @@ void require_sound(const std::string& output, const ReportExports& exports) {
     if (exports.mosaic && !is_mosaic) misplaced("--mosaic", "-o FILE.png or FILE.bmp");
     if (!exports.crops.empty() && !is_mosaic) misplaced("--crop", "--mosaic");
     if (!exports.metrics.empty() && !is_mosaic) misplaced("--metric", "--mosaic");
-    const bool reads_only =
-        is_mosaic || exports.vti || extension_of(output) == ".cdb" || table_of(output) != nullptr;
-    if (!exports.only.empty() && !reads_only)
-        misplaced("--only", "--mosaic, --vti or -o FILE.csv, FILE.jsonl, FILE.tex or FOLDER.cdb");
+    const bool reads_only = is_picture(output) || exports.vti || extension_of(output) == ".cdb" ||
+                            table_of(output) != nullptr;
+    if (!exports.only.empty() && !reads_only) {
+        misplaced("--only", "--vti or -o FILE.png, FILE.csv, FILE.jsonl, FILE.tex or FOLDER.cdb");
+    }
 }
 
 void write_mosaic(const ReportData& data, const std::string& output, const ReportExports& exports) {
@@ -92,6 +94,13 @@ void write_table(ReportData data, const std::string& output, const std::string& 
     std::printf("table: %s\n", output.c_str());
 }
 
+/// Of time against accuracy, and of some groups alone.
+void write_chart(ReportData data, const std::string& output, const std::string& only) {
+    keep_groups(data, only);
+    save_raster(chart_raster(data), output);
+    std::printf("chart: %s\n", output.c_str());
+}
+
 }  // namespace
 
 void add_export_options(CLI::App& report, ReportExports& exports) {
@@ -116,9 +125,11 @@ void add_export_options(CLI::App& report, ReportExports& exports) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->check(not_empty());
     report
-        .add_option("--only", exports.only,
-                    "with --mosaic, --vti, a table or -o FOLDER.cdb: cells whose name matches this "
-                    "regular expression")
+        .add_option(
+            "--only", exports.only,
+            "with --mosaic, --vti, a chart, a table or -o FOLDER.cdb: cells whose name matches "
+            "this regular expression")
+        ->excludes("--figure")
         ->check(not_empty());
 }
 
@@ -127,7 +138,9 @@ std::optional<ExitCode> run_exports(const std::string& directory, const std::str
     require_sound(output, exports);
     const bool is_database = extension_of(output) == ".cdb";
     const bool is_table = table_of(output) != nullptr;
-    if (!is_table && !is_database && !exports.vti && !exports.mosaic) return std::nullopt;
+    const bool is_chart = is_picture(output) && !exports.mosaic && !exports.only.empty();
+    if (!is_table && !is_database && !is_chart && !exports.vti && !exports.mosaic)
+        return std::nullopt;
     const ReportData data = read_report_data(directory);
     if (is_database) {
         write_cinema(data, selected_rows(data, exports.only), output, exports.vti);
@@ -137,7 +150,8 @@ std::optional<ExitCode> run_exports(const std::string& directory, const std::str
     if (exports.vti) write_vtis(data, exports.only);
     if (exports.mosaic) write_mosaic(data, output, exports);
     if (is_table) write_table(data, output, exports.only);
-    const bool is_report = !output.empty() && !is_table && !exports.mosaic;
+    if (is_chart) write_chart(data, output, exports.only);
+    const bool is_report = !output.empty() && !is_table && !is_chart && !exports.mosaic;
     return is_report ? std::nullopt : std::optional(ExitCode::ok);
 }
 

@@ -286,7 +286,8 @@ std::string failures(const ReportData& data) {
 std::string report_markdown(const ReportData& data) {
     const std::string name = data.run.value("name", "Results");
     return "# " + plain(name) + "\n\n" + facts(data) + catalogue_markdown(data) +
-           reproduction(data) + results(data) + stability(data) + references(data) + failures(data);
+           reproduction(data) + results(data) + equal_error_markdown(data) + stability(data) +
+           references(data) + failures(data);
 }
 
 }  // namespace vecino

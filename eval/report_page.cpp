@@ -3,6 +3,7 @@
 // Puts the parts of the report together, with the data that its charts are drawn from.
 #include <algorithm>
 
+#include "eval/equal_error.h"
 #include "eval/error_map.h"
 #include "eval/html_text.h"
 #include "eval/report_assets.h"
@@ -145,6 +146,8 @@ std::string contents_html(const ReportData& data) {
         data.failures.cases.empty() ? "" : "<a href=\"#catalogue\">Where methods fail</a> ";
     std::string html;
     if (!data.convergence.empty()) html += "<a href=\"#convergence\">Convergence</a> ";
+    if (!equal_error(data.groups).rows.empty())
+        html += "<a href=\"#equal-error\">Time to equal error</a> ";
     if (has_stability(data)) html += "<a href=\"#stability\">Stability</a> ";
     if (!data.reproduction) return first + html;
     const Reproduction& specification = data.reproduction->specification;
@@ -214,6 +217,7 @@ std::string report_page(const ReportData& data, const ReportPictures& pictures) 
          {"catalogue", catalogue_html(data)},
          {"reproduction", reproduction_html(data)},
          {"convergence", convergence_html(data)},
+         {"equal_error", equal_error_html(data)},
          {"stability", stability_html(data)},
          {"graphs", graphs_html(data)},
          {"figures", figures_html(data, pictures)},

@@ -56,6 +56,10 @@ std::string figures_html(const ReportData& data, const ReportPictures& pictures)
 /// Error of path tracing against samples and time; empty where no groups differ in spp alone.
 std::string convergence_html(const ReportData& data);
 
+/// What time budgets buy; empty without any.
+std::string equal_error_html(const ReportData& data);
+std::string equal_error_markdown(const ReportData& data);
+
 // Stability; empty where no matrix asked for it.
 bool has_stability(const ReportData& data);
 std::string stability_html(const ReportData& data);

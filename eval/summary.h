@@ -50,6 +50,9 @@ struct GroupSummary {
     std::vector<double> signature_by_seed;
     std::vector<std::string> cells;
 
+    /// Time of tracing and reconstruction alone; of images that came otherwise, all there is.
+    [[nodiscard]] double work_s() const { return trace_s > 0 ? trace_s + reconstruct_s : time_s; }
+
     /// Of a region by name, or of the whole image (""). Null without finished images.
     [[nodiscard]] const SeedStatistics* statistics_of(const std::string& region) const;
 };

@@ -31,6 +31,7 @@ void give_plan(const SurfaceRecordsPlan& plan, SurfaceRecordsOptions& options) {
     options.refined_record_paths = plan.refined_record_paths;
     options.fit_sigma = plan.fit_sigma;
     options.refine_tau = plan.refine_tau;
+    options.fit_order = plan.fit_order;
 }
 
 /// What ran: the request itself, with a method and numbers of its own.

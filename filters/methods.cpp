@@ -24,7 +24,7 @@ constexpr std::string_view kReuseOptions[] = {"radius", "reused", "weighting", "
 constexpr std::string_view kVariationOptions[] = {"variation_rule", "variation_bound", "min_spp"};
 constexpr std::string_view kSurfaceRecordsOptions[] = {
     "pilot_spp", "edge_spp",  "cell", "levels", "record_paths", "refined_record_paths",
-    "fit_sigma", "refine_tau"};
+    "fit_sigma", "refine_tau", "fit_order"};
 constexpr std::string_view kAutoOptions[] = {"time_budget"};
 
 // clang-format off

@@ -88,18 +88,21 @@ void Pace::choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan) 
     records_until_s_ = watch_.seconds() + std::max(left_s(), 0.0) * records_s / all_s;
 }
 
-void Pace::choose_paths(int level, std::size_t records, SurfaceRecordsPlan& plan) {
-    if (records == 0 || level > 1) return;  // all halved cells have as many paths
+void Pace::choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan) {
+    if (level.records == 0 || level.level > 1) return;  // all halved cells have as many paths
+    // What was timed is much of a short stage, and may have been disturbed.
+    const double path_s =
+        std::clamp(level.path_s, 0.7 * rates_.record_path_s, 1.6 * rates_.record_path_s);
     // Levels to come have about so many records for each of this one, with so many paths.
-    const double finer =
-        level == 0 ? kRefinedShare * plan.levels * plan.refined_record_paths / plan.record_paths
-                   : plan.levels - level;
-    const double path_s = static_cast<double>(records) * (1 + finer) * rates_.record_path_s;
-    const double paths = (records_until_s_ - watch_.seconds()) / path_s - kRecordStart;
-    int& chosen = level == 0 ? plan.record_paths : plan.refined_record_paths;
+    const double finer = level.level == 0 ? kRefinedShare * plan.levels *
+                                                plan.refined_record_paths / plan.record_paths
+                                          : plan.levels - level.level;
+    const double all_s = static_cast<double>(level.records) * (1 + finer) * path_s;
+    const double paths = (records_until_s_ - watch_.seconds()) / all_s - kRecordStart;
+    int& chosen = level.level == 0 ? plan.record_paths : plan.refined_record_paths;
     const int planned = chosen;
     chosen = whole_packets(std::clamp(paths, planned / 4.0, planned * 4.0));
-    if (level == 0) {
+    if (level.level == 0) {
         plan.refined_record_paths =
             whole_packets(static_cast<double>(chosen) * plan.refined_record_paths / planned);
     }
@@ -120,7 +123,8 @@ void Pace::choose_edges(const std::function<double(int)>& cost, double unit_s,
     };
     // Records may have taken longer than was thought: then it pays to be a little late.
     const int due = std::max(plan.edge_spp / 2, kLeastEdgeSpp);
-    plan.edge_spp = std::max(most_in(left), std::min(most_in(left + grace), due));
+    const double late_s = std::max(left + grace, 0.5 * grace);
+    plan.edge_spp = std::max(most_in(left), std::min(most_in(late_s), due));
 }
 
 }  // namespace vecino

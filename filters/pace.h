@@ -9,6 +9,7 @@
 
 #include "core/timing.h"
 #include "filters/auto_plan.h"
+#include "filters/records.h"
 
 namespace vecino {
 
@@ -52,8 +53,8 @@ class Pace {
     void choose_pilot(double sample_s, SurfaceRecordsPlan& plan);
     /// All but pilot_spp, as far as can be told.
     void choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan);
-    /// Paths for the records of a level, now that they are counted.
-    void choose_paths(int level, std::size_t records, SurfaceRecordsPlan& plan);
+    /// Paths for the records of a level, now that they are counted and some of them timed.
+    void choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan);
     /// The last that is open. cost: units of work that edge samples, so many on average, take;
     /// unit_s: one of these, on one thread.
     void choose_edges(const std::function<double(int)>& cost, double unit_s,

@@ -118,9 +118,7 @@ class Band {
         if (!has_records(tracer_.task)) return;
         CountRecords count;
         if (context_.pace != nullptr) {
-            count = [this](int level, std::size_t records) {
-                context_.pace->choose_paths(level, records, plan_);
-            };
+            count = [this](const RecordCount& level) { context_.pace->choose_paths(level, plan_); };
         }
         RecordWork work = gather_records({tracer_, clusters_}, plan_, count);
         map_ = std::move(work.map);

@@ -80,8 +80,10 @@ bool solve(NormalEquations& e, std::size_t n, std::size_t channels) {
 
 class RecordFitter {
   public:
-    RecordFitter(const RecordMap& map, double sigma)
-        : map_(map), per_sigma2_(0.5 / (sigma * sigma)) {}
+    RecordFitter(const RecordMap& map, const SurfaceRecordsPlan& plan)
+        : map_(map),
+          per_sigma2_(0.5 / (plan.fit_sigma * plan.fit_sigma)),
+          most_order_(plan.fit_order) {}
 
     void fit(std::size_t level, int column, int row, Record& record) const {
         set_tangents(record);
@@ -147,10 +149,10 @@ class RecordFitter {
     }
 
     void set_fit(const NormalEquations& equations, Record& record) const {
-        int order = equations.records >= kLeastForSecondOrder  ? 2
-                    : equations.records >= kLeastForFirstOrder ? 1
-                                                               : 0;
-        for (; order >= 0; --order) {
+        const int known = equations.records >= kLeastForSecondOrder  ? 2
+                          : equations.records >= kLeastForFirstOrder ? 1
+                                                                     : 0;
+        for (int order = std::min(known, most_order_); order >= 0; --order) {
             NormalEquations ridged = equations;
             const std::size_t n = kTermsOfOrder[static_cast<std::size_t>(order)];
             for (std::size_t i = 1; i < n; ++i)
@@ -181,12 +183,13 @@ class RecordFitter {
 
     const RecordMap& map_;
     double per_sigma2_;
+    int most_order_;
 };
 
 }  // namespace
 
 void fit_records(RecordMap& map, const SurfaceRecordsPlan& plan, int threads) {
-    const RecordFitter fitter(map, plan.fit_sigma);
+    const RecordFitter fitter(map, plan);
     for (std::size_t number = 0; number < map.levels.size(); ++number) {
         RecordLevel& level = map.levels[number];
         const RowRange rows = level.rows();

@@ -209,6 +209,22 @@ RecordLevel halve(const RecordLevel& level, int width, RowRange rows, double tau
     return next;
 }
 
+/// Seconds for a path of some of the records, by all threads: what one thread takes alone says too
+/// little of that.
+double time_some(const RecordTracer& tracer, const Candidates& candidates, int paths,
+                 const RecordLevel& level) {
+    constexpr std::size_t kOneOf = 32, kAtLeast = 32;
+    const std::size_t step = std::clamp(candidates.size() / kAtLeast, std::size_t{1}, kOneOf);
+    Candidates some;
+    for (std::size_t i = 0; i < candidates.size(); i += step) some.push_back(candidates[i]);
+    RecordLevel scratch(level.cell(), level.cell(), {0, level.cell()});
+    RecordWork work;
+    const Stopwatch watch;
+    gather_level(tracer, some, paths, scratch, work);
+    return watch.seconds() /
+           std::max(static_cast<double>(some.size()) * (paths + kRecordStart), 1.0);
+}
+
 /// Of a record's light where its pixel shows it, in sRGB; of what is too bright to be shown none.
 double shown_noise(const RecordInputs& inputs, const Record& record) {
     const Cluster cluster =
@@ -239,9 +255,9 @@ RecordWork gather_records(const RecordInputs& inputs, const SurfaceRecordsPlan& 
     std::ranges::fill(level.active, std::uint8_t{1});
     for (int number = 0;; ++number) {
         const Candidates candidates = place_records(clusters, level, tracer.threads);
-        if (count) count(number, candidates.size());
-        gather_level(tracer, candidates,
-                     number == 0 ? plan.record_paths : plan.refined_record_paths, level, work);
+        const int& paths = number == 0 ? plan.record_paths : plan.refined_record_paths;
+        if (count) count({number, candidates.size(), time_some(tracer, candidates, paths, level)});
+        gather_level(tracer, candidates, paths, level, work);
         work.map.levels.push_back(std::move(level));
         const RecordLevel& made = work.map.levels.back();
         if (number == plan.levels || made.cell() % 2 != 0) return work;

@@ -91,11 +91,16 @@ struct RecordInputs {
     const PixelClusters& clusters;
 };
 
-/// Called with the number of a level and of its records before their light is gathered.
-using CountRecords = std::function<void(int level, std::size_t records)>;
+/// What is known of the records of a level before their light is gathered.
+struct RecordCount {
+    int level;
+    std::size_t records;
+    double path_s;  ///< of all threads together, by paths + kRecordStart: measured on some of them
+};
+using CountRecords = std::function<void(const RecordCount&)>;
 
 /// Places records for all surfaces that clusters show and gathers their light. count, if there is
-/// one, may change the paths of the plan.
+/// one, is called for each level and may change the paths of the plan.
 RecordWork gather_records(const RecordInputs& inputs, const SurfaceRecordsPlan& plan,
                           const CountRecords& count);
 

@@ -39,6 +39,7 @@ void check_plan(const SurfaceRecordsPlan& plan, const RenderSettings& settings) 
     require_between(plan.levels, 0, 8, "levels");
     require_between(plan.record_paths, 1, 1 << 20, "record_paths");
     require_between(plan.refined_record_paths, 1, 1 << 20, "refined_record_paths");
+    require_between(plan.fit_order, 0, 2, "fit_order");
     require(plan.fit_sigma > 0, "fit_sigma", std::to_string(plan.fit_sigma), "more than 0");
     require(plan.refine_tau > 0, "refine_tau", std::to_string(plan.refine_tau), "more than 0");
     for (const PlaneInfo& info : all_planes()) {

@@ -21,6 +21,7 @@ struct SurfaceRecordsPlan {
     double fit_sigma = 0.85;         ///< width of the window of the fit, in cells; > 0
     double refine_tau = 0.15;        ///< cells are halved down to this share of the distance to
                                      ///< what is around them; > 0
+    int fit_order = 2;               ///< of the polynomials between records, at most; 0 to 2
 
     /// Whether all values are equal.
     friend bool operator==(const SurfaceRecordsPlan&, const SurfaceRecordsPlan&) = default;

@@ -18,6 +18,7 @@ constexpr IntegerKind kEdgeSpp{0, 65536};
 constexpr IntegerKind kCell{1, 256};
 constexpr IntegerKind kLevels{0, 8};
 constexpr IntegerKind kPaths{1, 1 << 20};
+constexpr IntegerKind kOrder{0, 2};
 /// In double, which prints as it was given.
 struct NumberKind {
     NumberRange range;
@@ -82,7 +83,8 @@ constexpr MethodOption row(std::string_view name, std::string_view flag, std::st
 }
 
 constexpr char kPilot[] = "pilot", kEdge[] = "edge", kCellSlug[] = "cell", kLevelSlug[] = "lev",
-               kRecord[] = "paths", kRefined[] = "fine", kSigma[] = "sigma", kTau[] = "tau";
+               kRecord[] = "paths", kRefined[] = "fine", kSigma[] = "sigma", kTau[] = "tau",
+               kOrderSlug[] = "order";
 
 // clang-format off
 const MethodOption kRows[] = {
@@ -102,6 +104,8 @@ const MethodOption kRows[] = {
         "standard deviation of the window that records are fitted in, cells"),
     row<kPositive, &Options::refine_tau, kTau>("refine_tau", "--refine-tau", "a number from 0.001 to 1000, or auto",
         "a cell is halved if it is larger than this share of the distance to what is around it"),
+    row<kOrder, &Options::fit_order, kOrderSlug>("fit_order", "--fit-order", "an integer from 0 to 2, or auto",
+        "of the polynomials between records, at most"),
 };
 // clang-format on
 
@@ -122,6 +126,7 @@ SurfaceRecordsPlan plan_of(const SurfaceRecordsOptions& options, int spp) {
     put(options.refined_record_paths, plan.refined_record_paths);
     put(options.fit_sigma, plan.fit_sigma);
     put(options.refine_tau, plan.refine_tau);
+    put(options.fit_order, plan.fit_order);
     return plan;
 }
 
@@ -143,6 +148,7 @@ MethodRender method_render(StagedRender staged) {
                  {"refined_record_paths", plan.refined_record_paths},
                  {"fit_sigma", plan.fit_sigma},
                  {"refine_tau", plan.refine_tau},
+                 {"fit_order", plan.fit_order},
                  {"needy_pixels", staged.counts.needy_pixels},
                  {"records", staged.counts.records}};
     out.stage_s = {{"pilot", times.pilot_s},     {"records", times.records_s},

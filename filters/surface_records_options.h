@@ -20,6 +20,7 @@ struct SurfaceRecordsOptions {
     std::optional<int> refined_record_paths;  ///< SurfaceRecordsPlan::refined_record_paths
     std::optional<double> fit_sigma;          ///< SurfaceRecordsPlan::fit_sigma
     std::optional<double> refine_tau;         ///< SurfaceRecordsPlan::refine_tau
+    std::optional<int> fit_order;             ///< SurfaceRecordsPlan::fit_order
 };
 
 /// The plan of surface_records_plan(spp), with what is given in its place.

@@ -233,7 +233,7 @@ TEST_CASE("a pace gives to records and samples what the time allows", "[auto]") 
         SurfaceRecordsPlan plan = Pace::first_plan();
         pace.choose_pilot(4e-8, plan);
         pace.choose_structure(here, plan);
-        pace.choose_paths(0, 4300, plan);
+        pace.choose_paths({0, 4300, 3e-8}, plan);
         pace.choose_edges([](int edge_spp) { return 14000.0 * (edge_spp + 25); }, 4e-8, plan);
         return plan;
     };
@@ -257,7 +257,7 @@ TEST_CASE("a machine that is busy is given less to do", "[auto]") {
         pace.choose_pilot(4e-8, plan);
         pace.take_stage(0.2, 0.1 * slowness);
         pace.choose_structure({14000, 1150, 8e-7, 6e-8, 4e-8}, plan);
-        pace.choose_paths(0, 4300, plan);
+        pace.choose_paths({0, 4300, 3e-8 * slowness}, plan);
         return plan.cell * plan.cell < 32 ? 4.0 * plan.record_paths : plan.record_paths;
     };
     CHECK(paths_on(4) < 0.5 * paths_on(1));

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/color.h"
 #include "core/image_io.h"
 #include "eval/cell_vti.h"
 #include "eval/cinema.h"
@@ -251,6 +252,25 @@ TEST_CASE("a table of part of the groups keeps all of their seeds", "[report_tab
     CHECK(column(table, "seeds") == std::vector<std::string>{"2", "2"});
     REQUIRE(exported(run, "a.tex", {.only = "nearest"}) == ExitCode::ok);
     CHECK(run.temp.read("a.tex").find("mean}") == std::string::npos);
+}
+
+TEST_CASE("a chart of part of the groups has their marks alone", "[report_tables]") {
+    const ExportedRun run;
+    REQUIRE(exported(run, "a.png", {.only = "mean"}) == ExitCode::ok);
+    const Image picture = load_image(run.temp.path("a.png"));
+    const auto pixels_like = [&](glm::u8vec3 colour) {
+        int count = 0;
+        for (const glm::vec3& pixel : picture.values()) {
+            const auto byte = [](float v) { return quantise_8bit(srgb_encode(v)); };
+            count +=
+                byte(pixel.x) == colour.x && byte(pixel.y) == colour.y && byte(pixel.z) == colour.z;
+        }
+        return count;
+    };
+    CHECK(pixels_like({185, 120, 0}) > 100);  // mean
+    CHECK(pixels_like({11, 107, 176}) == 0);  // nearest
+    CHECK(error_of([&] { (void)exported(run, "a.png", {.only = "nothing"}); }).code() ==
+          ExitCode::usage);
 }
 
 TEST_CASE("what a field of CSV holds comes back", "[report_tables]") {

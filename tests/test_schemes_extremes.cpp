@@ -7,21 +7,11 @@
 #include <limits>
 
 #include "tests/catch.h"
-#include "tests/scheme_frames.h"
+#include "tests/scheme_cells.h"
 
 using namespace vecino;
 
 namespace {
-
-template <class Check>
-void for_each_cell(int window, Check&& check) {
-    for (const Scheme& scheme : all_schemes()) {
-        for (const SchemeParameters& parameters : parameters_of(scheme, window)) {
-            INFO(cell_name(scheme, parameters));
-            check(scheme, parameters);
-        }
-    }
-}
 
 /// A frame, and a size that it is rebuilt at.
 struct Sizes {

@@ -9,21 +9,11 @@
 #include <utility>
 
 #include "tests/catch.h"
-#include "tests/scheme_frames.h"
+#include "tests/scheme_cells.h"
 
 using namespace vecino;
 
 namespace {
-
-template <class Check>
-void for_each_cell(int window, Check&& check) {
-    for (const Scheme& scheme : all_schemes()) {
-        for (const SchemeParameters& parameters : parameters_of(scheme, window)) {
-            INFO(cell_name(scheme, parameters));
-            check(scheme, parameters);
-        }
-    }
-}
 
 /// A frame with its pixels elsewhere: what was at from(x, y) is then at (x, y).
 template <class From>

@@ -8,22 +8,12 @@
 #include "filters/methods.h"
 #include "tests/catch.h"
 #include "tests/scene_text.h"
-#include "tests/scheme_frames.h"
+#include "tests/scheme_cells.h"
 
 using namespace vecino;
 using namespace vecino::test;
 
 namespace {
-
-template <class Check>
-void for_each_cell(int window, Check&& check) {
-    for (const Scheme& scheme : all_schemes()) {
-        for (const SchemeParameters& parameters : parameters_of(scheme, window)) {
-            INFO(cell_name(scheme, parameters));
-            check(scheme, parameters);
-        }
-    }
-}
 
 /// What stands at from(x, y) of a grid, at (x, y) of one of another size.
 template <class T, class From>

@@ -160,6 +160,9 @@ TEST_CASE("every ingredient of surface records carries some of its accuracy", "[
     CHECK(whole >
           without([](SurfaceRecordsPlan& p) { p.record_paths = p.refined_record_paths = 8; }) + 2);
     CHECK(whole > without([](SurfaceRecordsPlan& p) { p.fit_sigma = 10; }) + 0.2);
+    CHECK(whole > without([](SurfaceRecordsPlan& p) { p.fit_order = 1; }) + 0.2);
+    CHECK(without([](SurfaceRecordsPlan& p) { p.fit_order = 1; }) >
+          without([](SurfaceRecordsPlan& p) { p.fit_order = 0; }));
 }
 
 TEST_CASE("in a furnace surface records are as bright as the series says", "[surface_records]") {
