@@ -60,7 +60,9 @@ bool matches(const Assignment& cell, const Axes& pattern) {
         const auto found = cell.find(entry.first);
         return found != cell.end() &&
                std::ranges::any_of(entry.second, [&](const JsonValue& value) {
-                   return value.raw() == found->second.raw();
+                   return value.raw() == found->second.raw() ||
+                          (entry.first == "scene" &&
+                           plain_path(value.string()) == plain_path(found->second.string()));
                });
     });
 }
