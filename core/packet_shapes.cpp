@@ -17,8 +17,6 @@ constexpr unsigned kNear = 3;
 constexpr unsigned kDirection = 4;
 constexpr unsigned kFar = 8;
 
-constexpr float kMiss = std::numeric_limits<float>::infinity();
-
 void put(float (&to)[3], const glm::dvec3& from) {
     for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
 }
@@ -35,7 +33,7 @@ VECINO_INLINE float dot(const float* a, const float* rows, unsigned i, unsigned 
     return a[0] * rows[i] + a[1] * rows[i + n] + a[2] * rows[i + 2 * n];
 }
 
-// The distance at which ray i of n hits, in (t_near, t_far]; infinite where it does not. The
+// The distance at which ray i of n hits, in (t_near, t_far); t_far where it does not. The
 // discriminant is taken from the distance of the centre to the ray, which keeps its digits when the
 // sphere is far away (Haines et al., Ray Tracing Gems, chapter 7).
 VECINO_INLINE float nearest_hit(const SphereShape& sphere, const Rays& rays, unsigned i,
@@ -62,8 +60,8 @@ VECINO_INLINE float nearest_hit(const SphereShape& sphere, const Rays& rays, uns
     const float first = s < t ? s : t;
     const float second = s < t ? t : s;
     const float hit = first > rays.t_near[i] ? first : second;
-    const bool is_hit = (hit > rays.t_near[i]) & (hit <= rays.t_far[i]) & (discriminant > 0.0f);
-    return is_hit ? hit : kMiss;
+    const bool is_hit = (hit > rays.t_near[i]) & (hit < rays.t_far[i]) & (discriminant > 0.0f);
+    return is_hit ? hit : rays.t_far[i];
 }
 
 VECINO_INLINE float nearest_hit(const ParallelogramShape& shape, const Rays& rays, unsigned i,
@@ -74,8 +72,8 @@ VECINO_INLINE float nearest_hit(const ParallelogramShape& shape, const Rays& ray
     const float u = dot(shape.u, rays.origin, i, n) + t * dot(shape.u, rays.direction, i, n);
     const float v = dot(shape.v, rays.origin, i, n) + t * dot(shape.v, rays.direction, i, n);
     const bool is_hit = (u >= shape.u_least) & (u <= shape.u_most) & (v >= shape.v_least) &
-                        (v <= shape.v_most) & (t > rays.t_near[i]) & (t <= rays.t_far[i]);
-    return is_hit ? t : kMiss;
+                        (v <= shape.v_most) & (t > rays.t_near[i]) & (t < rays.t_far[i]);
+    return is_hit ? t : rays.t_far[i];
 }
 
 template <class Shape>
@@ -86,8 +84,7 @@ VECINO_INLINE void nearest_hits(const Shape& shape, const RayRows& rays, unsigne
     for (unsigned i = 0; i < n; ++i) nearest[i] = nearest_hit(shape, read, i, n);
 }
 
-// Two loops each: in one, the compiler takes the writes for branches. Of shapes at one distance the
-// last counts, in whatever order Embree comes by: that order is another for other packet widths.
+// Two loops each: in one, the compiler takes the writes for branches.
 template <class Shape>
 VECINO_INLINE void intersect_rays(const Shape& shape, const RayRows& rays, const HitRows& hits,
                                   unsigned n) {
@@ -100,9 +97,7 @@ VECINO_INLINE void intersect_rays(const Shape& shape, const RayRows& rays, const
     const unsigned primitive_id = hits.primitive_id;
     const unsigned geometry_id = hits.geometry_id;
     for (unsigned i = 0; i < n; ++i) {
-        const bool is_before = (geometry[i] == geometry_id) & (primitive[i] < primitive_id);
-        const bool is_nearer =
-            (valid[i] != 0) & ((nearest[i] < t_far[i]) | ((nearest[i] == t_far[i]) & is_before));
+        const bool is_nearer = (valid[i] != 0) & (nearest[i] < t_far[i]);
         primitive[i] = is_nearer ? primitive_id : primitive[i];
         geometry[i] = is_nearer ? geometry_id : geometry[i];
         t_far[i] = is_nearer ? nearest[i] : t_far[i];
@@ -142,11 +137,9 @@ ParallelogramShape parallelogram_shape(const std::array<glm::vec3, 4>& corners_w
     }
     // Some 8 units in the last place of the coordinates, which a hit is off by.
     const float rounding = 0x1p-21f * reach;
-    // Boxes so wide that Embree leaves out none of two shapes in one plane, also where it looks
-    // from 40 times as far away.
     for (int k = 0; k < 3; ++k) {
-        shape.lower[k] -= 16.0f * rounding;
-        shape.upper[k] += 16.0f * rounding;
+        shape.lower[k] -= 2.0f * rounding;
+        shape.upper[k] += 2.0f * rounding;
     }
     put(shape.normal, normal);
     put(shape.u, u);

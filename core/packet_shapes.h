@@ -42,9 +42,7 @@ struct HitRows {
 };
 
 /// Where an active ray hits between t_near and t_far, from either side, puts the distance (in
-/// lengths of its direction) into t_far and writes the hit. At t_far itself it is one if the hit
-/// that is there is of the same geometry and an earlier primitive: the last of several in one place
-/// counts.
+/// lengths of its direction) into t_far and writes the hit.
 void intersect(const SphereShape& shape, const RayRows& rays, const HitRows& hits);
 void intersect(const ParallelogramShape& shape, const RayRows& rays, const HitRows& hits);
 

@@ -3,7 +3,6 @@
 // A method that does not allow a cell's settings: the cell is refused, the run goes on, and where a
 // failure's file expects it nothing is wrong with the run.
 #include "eval/failure_results.h"
-#include "eval/gate_failures.h"
 #include "eval/gate_run.h"
 #include "tests/catch.h"
 #include "tests/program.h"
