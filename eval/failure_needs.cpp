@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/failure_needs.h"
 
-#include <filesystem>
-
 namespace vecino {
-
-std::string plain_path(const std::string& path) {
-    return std::filesystem::path(path).lexically_normal().generic_string();
-}
 
 FailureNeeds::FailureNeeds(const JsonValue& matrix, const std::vector<FailureCase>& failures) {
     if (!matrix.has("failures")) return;
@@ -15,9 +9,8 @@ FailureNeeds::FailureNeeds(const JsonValue& matrix, const std::vector<FailureCas
     for (std::size_t i = 0; i < documents.size(); ++i) {
         const JsonValue scene = documents[i].at("scene");
         scenes_.push_back(scene);
-        const std::string file = plain_path(scene.string());
-        needs_.insert_or_assign(file, read_axes(documents[i].at("needs")));
-        injections_.insert_or_assign(file, failures[i].inject);
+        needs_.insert_or_assign(scene.string(), read_axes(documents[i].at("needs")));
+        injections_.insert_or_assign(scene.string(), failures[i].inject);
     }
 }
 
@@ -25,7 +18,7 @@ Axes FailureNeeds::apply(Axes axes, const JsonValue& scene,
                          std::map<std::string, JsonValue>& needed) const {
     axes["scene"] = {scene};
     needed.clear();
-    const auto needs = needs_.find(plain_path(scene.string()));
+    const auto needs = needs_.find(scene.string());
     if (needs == needs_.end()) return axes;
     for (const auto& [key, values] : needs->second) {
         axes.erase(key);
@@ -36,7 +29,7 @@ Axes FailureNeeds::apply(Axes axes, const JsonValue& scene,
 }
 
 std::vector<Injection> FailureNeeds::injections(const std::string& scene) const {
-    const auto found = injections_.find(plain_path(scene));
+    const auto found = injections_.find(scene);
     return found == injections_.end() ? std::vector<Injection>() : found->second;
 }
 

@@ -13,9 +13,6 @@
 
 namespace vecino {
 
-/// One spelling of a path: without dots, and folders that are left again.
-std::string plain_path(const std::string& path);
-
 class FailureNeeds {
   public:
     /// Of a matrix's document and what was read of it; refers to the document.
@@ -34,7 +31,7 @@ class FailureNeeds {
 
   private:
     std::vector<JsonValue> scenes_;
-    std::map<std::string, Axes> needs_;  ///< by plain path
+    std::map<std::string, Axes> needs_;
     std::map<std::string, std::vector<Injection>> injections_;
 };
 

@@ -60,9 +60,7 @@ bool matches(const Assignment& cell, const Axes& pattern) {
         const auto found = cell.find(entry.first);
         return found != cell.end() &&
                std::ranges::any_of(entry.second, [&](const JsonValue& value) {
-                   return value.raw() == found->second.raw() ||
-                          (entry.first == "scene" &&
-                           plain_path(value.string()) == plain_path(found->second.string()));
+                   return value.raw() == found->second.raw();
                });
     });
 }
