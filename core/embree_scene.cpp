@@ -2,6 +2,7 @@
 #include "core/embree_scene.h"
 
 #include "core/embree_geometry.h"
+#include "core/overlays.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -16,6 +17,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace vecino {
@@ -45,11 +47,21 @@ void bounds_of(const ParallelogramShape& shape, RTCBounds& box) {
     box.upper_z = shape.upper[2];
 }
 
+/// Shapes of ours in a scene of Embree's.
+template <class Shape>
+struct Shapes {
+    std::vector<Shape> list;
+    std::vector<std::vector<unsigned>> overlays;  ///< find_overlays; empty: none
+};
+
 /// The functions that Embree calls for shapes of ours.
 template <class Shape>
 struct Callbacks {
-    static const Shape& shape(void* shapes, unsigned number) {
-        return static_cast<const Shape*>(shapes)[number];
+    static const Shapes<Shape>& shapes(void* user_data) {
+        return *static_cast<const Shapes<Shape>*>(user_data);
+    }
+    static const Shape& shape(void* user_data, unsigned number) {
+        return shapes(user_data).list[number];
     }
 
     static void bounds(const RTCBoundsFunctionArguments* args) {
@@ -61,9 +73,17 @@ struct Callbacks {
         RTCRayN* const rays = RTCRayHitN_RayN(args->rayhit, n);
         RTCHitN* const hits = RTCRayHitN_HitN(args->rayhit, n);
         const RayRows rows{reinterpret_cast<float*>(rays), args->valid, n};
-        const HitRows hit_rows{&RTCHitN_primID(hits, n, 0), &RTCHitN_geomID(hits, n, 0),
-                               args->primID, args->geomID};
-        vecino::intersect(shape(args->geometryUserPtr, args->primID), rows, hit_rows);
+        HitRows hit_rows{&RTCHitN_primID(hits, n, 0), &RTCHitN_geomID(hits, n, 0), args->primID,
+                         args->geomID};
+        const Shapes<Shape>& all = shapes(args->geometryUserPtr);
+        vecino::intersect(all.list[args->primID], rows, hit_rows);
+        if constexpr (std::is_same_v<Shape, ParallelogramShape>) {
+            if (all.overlays.empty()) return;
+            for (const unsigned above : all.overlays[args->primID]) {
+                hit_rows.primitive_id = above;
+                intersect_overlay(all.list[above], rows, hit_rows);
+            }
+        }
     }
 
     static void occluded(const RTCOccludedFunctionNArguments* args) {
@@ -132,10 +152,10 @@ void attach_quads(RTCDevice device, RTCScene scene, const EmbreeGeometry& input)
 
 /// Shapes of ours; they must outlive the scene.
 template <class Shape>
-void attach_shapes(RTCDevice device, RTCScene scene, std::vector<Shape>& shapes, unsigned id) {
+void attach_shapes(RTCDevice device, RTCScene scene, Shapes<Shape>& shapes, unsigned id) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
-    rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(shapes.size()));
-    rtcSetGeometryUserData(geometry.get(), shapes.data());
+    rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(shapes.list.size()));
+    rtcSetGeometryUserData(geometry.get(), &shapes);
     rtcSetGeometryBoundsFunction(geometry.get(), Callbacks<Shape>::bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry.get(), Callbacks<Shape>::intersect);
     rtcSetGeometryOccludedFunction(geometry.get(), Callbacks<Shape>::occluded);
@@ -223,8 +243,8 @@ constexpr bool kSameLayout =
 struct EmbreeScene::Handles {
     Device device;
     Owned<RTCScene, ReleaseScene> scene;
-    std::vector<SphereShape> spheres;
-    std::vector<ParallelogramShape> parallelograms;
+    Shapes<SphereShape> spheres;
+    Shapes<ParallelogramShape> parallelograms;
 };
 
 EmbreeScene::EmbreeScene(const EmbreeGeometry& geometry) : handles_(nullptr) {
@@ -237,12 +257,14 @@ EmbreeScene::EmbreeScene(const EmbreeGeometry& geometry) : handles_(nullptr) {
         rtcSetSceneFlags(handles->scene.get(), RTC_SCENE_FLAG_ROBUST);
     RTCDevice const device = handles->device.get();
     RTCScene const scene = handles->scene.get();
-    handles->spheres.assign(geometry.spheres, geometry.spheres + geometry.sphere_count);
+    handles->spheres.list.assign(geometry.spheres, geometry.spheres + geometry.sphere_count);
     if (geometry.quad_count > kMostParallelograms) {
         attach_quads(device, scene, geometry);
     } else if (geometry.quad_count > 0) {
         for (std::size_t i = 0; i < geometry.quad_count; ++i)
-            handles->parallelograms.push_back(parallelogram_shape(geometry.quads[i]));
+            handles->parallelograms.list.push_back(parallelogram_shape(geometry.quads[i]));
+        handles->parallelograms.overlays =
+            find_overlays({geometry.quads, geometry.quad_count}, handles->parallelograms.list);
         attach_shapes(device, scene, handles->parallelograms, kQuads);
     }
     if (geometry.triangle_count > 0) attach_triangles(device, scene, geometry);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "core/color.h"
@@ -79,6 +80,7 @@ class Flattener {
     FlatScene run() {
         for (std::size_t i = 0; i < scene_.objects.size(); ++i) add_object(i);
         if (!has_normals_) flat_.vertex_normals.clear();
+        put_emitters_last();
         fill_table();
         set_selection_probabilities();
         flat_.light_tree = build_light_tree(flat_.lights);
@@ -93,6 +95,22 @@ class Flattener {
         object_id_ = static_cast<std::int32_t>(index);
         material_ = &scene_.materials[scene_.objects[index].material];
         std::visit([this](const auto& shape) { add(shape); }, scene_.objects[index].shape);
+    }
+
+    // Of parallelograms in one place the last is hit. A lamp that lies in a wall's plane is there
+    // for rays as it is for next-event estimation, wherever the file names it.
+    void put_emitters_last() {
+        std::vector<std::size_t> order(quads_.list.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_partition(order, [&](std::size_t i) {
+            return std::bit_cast<std::int32_t>(quads_.list[i].fields[kLight]) < 0;
+        });
+        Surfaces<std::array<glm::vec3, 4>> sorted;
+        for (const std::size_t i : order) {
+            sorted.list.push_back(quads_.list[i]);
+            sorted.shapes.push_back(quads_.shapes[i]);
+        }
+        quads_ = std::move(sorted);
     }
 
     // Columns in the order of EmbreeKind.

@@ -303,7 +303,10 @@ constexpr JsonKey<Scene> kSceneKeys[] = {
      [](Scene& scene, const JsonValue& json) { scene.camera = parse_camera(json); },
      [] { return object_schema(kCameraKeys); }},
     {"materials", required, "by name", read_materials, materials_schema},
-    {"objects", required, "what there is to see", read_objects,
+    {"objects", required,
+     "what there is to see; of up to 2048 parallelograms, emitters hide what else lies in their "
+     "plane, and of others those that stand later here the earlier ones",
+     read_objects,
      [] {
          return array_schema(one_object_schema(), {0, 0});
      }},

@@ -65,6 +65,7 @@ class Plan {
             plan_.faults.insert(plan_.faults.end(), group.faults.begin(), group.faults.end());
             return;
         }
+        if (group.is_refused()) return;
         const GateClass& gate = class_of(run_.classes, group.params);
         const BaselineGroup now = baseline_of(group, gate);
         const BaselineGroup* const then = old_group(group.name);
@@ -119,10 +120,13 @@ class Plan {
 
     void remove_gone() {
         std::erase_if(plan_.baseline.groups, [&](const auto& entry) {
-            const bool gone = run_.find(entry.first) == nullptr && only_.matches(entry.first);
+            const RunGroup* const group = run_.find(entry.first);
+            const bool gone =
+                (group == nullptr || group->is_refused()) && only_.matches(entry.first);
             if (gone) {
                 ++plan_.changed;
-                lines_.push_back({'-', entry.first, "", "", "", "no longer in the matrix"});
+                lines_.push_back({'-', entry.first, "", "", "",
+                                  group == nullptr ? "no longer in the matrix" : "refused"});
             }
             return gone;
         });

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "core/error.h"
 #include "core/files.h"
 #include "core/image_io.h"
 #include "core/timing.h"
@@ -221,15 +220,26 @@ nlohmann::json failed_result(const std::string& reason) {
     return {{"status", "failed"}, {"reason", reason}};
 }
 
+nlohmann::json error_result(const Cell& cell, const Error& error) {
+    nlohmann::json result = failed_result(error.what());
+    // What is wrong with an image from elsewhere is no matter of a method of ours.
+    const bool is_refusal = error.code() == ExitCode::usage && cell.kind != CellKind::image;
+    if (is_refusal) result["status"] = "refused";
+    return result;
+}
+
+bool is_of_cell(const Error& error) {
+    return dynamic_cast<const WriteError*>(&error) == nullptr &&
+           error.code() != ExitCode::interrupted;
+}
+
 nlohmann::json cell_result(const Cell& cell, const CellInput& input,
                            const RunDirectory& directory) {
     try {
         return measure(cell, input, directory);
-    } catch (const WriteError&) {
-        throw;  // no fault of the cell: the run goes on from here once there is room
     } catch (const Error& error) {
-        if (error.code() == ExitCode::interrupted) throw;
-        return failed_result(error.what());
+        if (!is_of_cell(error)) throw;
+        return error_result(cell, error);
     }
 }
 

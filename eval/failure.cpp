@@ -31,6 +31,7 @@ constexpr Named<FailureVerdict> kVerdicts[] = {
     {"pass", FailureVerdict::pass},
     {"degraded", FailureVerdict::degraded},
     {"fails", FailureVerdict::fails},
+    {"refuses", FailureVerdict::refuses},
 };
 constexpr ChoiceKind kVerdictKind{kVerdicts};
 
@@ -67,7 +68,8 @@ constexpr JsonKey<Expectation> kExpectationKeys[] = {
          expectation.where = Selection::read(json);
      },
      [] { return free_selection_schema(); }},
-    {"verdict", required, "one or several",
+    {"verdict", required,
+     "one or several; refuses: the method does not allow the settings that the scene needs",
      [](Expectation& expectation, const JsonValue& json) {
          for (const JsonValue& each : one_or_several(json))
              expectation.verdicts.push_back(kVerdictKind.read(each));

@@ -22,6 +22,7 @@ enum class FailureVerdict {
     pass,      ///< at most pass_below
     degraded,  ///< between both limits
     fails,     ///< above fails_above, not finite, or without an image
+    refuses,   ///< no value: the method does not allow the settings that the scene needs
 };
 
 std::string verdict_name(FailureVerdict verdict);

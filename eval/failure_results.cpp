@@ -31,6 +31,10 @@ std::string text_at(const Json& row, const char* key) {
     return value.is_string() ? value.get<std::string>() : "";
 }
 
+bool is_refused(const Json& row) {
+    return text_at(row, "status") == "refused";
+}
+
 double mean_of(const SignatureValues& values) {
     double sum = 0;
     for (const double value : values) sum += value;
@@ -104,7 +108,9 @@ class Reader {
         }
         FailureResult& result = group.result;
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        result.verdict = failure.verdict(result.value.value_or(nan));
+        result.verdict = std::ranges::all_of(group.rows, is_refused)
+                             ? FailureVerdict::refuses
+                             : failure.verdict(result.value.value_or(nan));
     }
 
     void measure(Group& group, const FailureCase& failure) const {
@@ -170,13 +176,26 @@ std::string plain_text(const Json& value) {
 }  // namespace
 
 bool FailureResult::is_unexpected() const {
-    if (!value) return true;
-    return !expected.empty() && std::ranges::find(expected, verdict) == expected.end();
+    const bool is_refusal = verdict == FailureVerdict::refuses;
+    if (!value && !is_refusal) return true;
+    return (is_refusal || !expected.empty()) &&
+           std::ranges::find(expected, verdict) == expected.end();
 }
 
 const FailureResult* Failures::find(const std::string& group) const {
     const auto found = std::ranges::find(results, group, &FailureResult::group);
     return found == results.end() ? nullptr : &*found;
+}
+
+bool is_expected_refusal(const Json& row, const std::vector<FailureCase>& failures) {
+    if (!is_refused(row)) return false;
+    const auto failure = std::ranges::find_if(failures, [&](const FailureCase& each) {
+        return stem(each.scene) == text_at(row, "scene");
+    });
+    if (failure == failures.end()) return false;
+    const Expectation* const expected = failure->expected(row.value("params", Json::object()));
+    return expected != nullptr && std::ranges::find(expected->verdicts, FailureVerdict::refuses) !=
+                                      expected->verdicts.end();
 }
 
 Failures failure_results(const std::string& directory, const std::vector<Json>& rows,

@@ -27,7 +27,8 @@ struct FailureResult {
     std::vector<FailureVerdict> expected;  ///< any of these; empty: nothing was expected
     std::string why;                       ///< that was expected; may be empty
 
-    /// Also where there is no value: nobody expects a measure that cannot be taken.
+    /// Also where there is no value but by a refusal: nobody expects a measure that cannot be
+    /// taken.
     [[nodiscard]] bool is_unexpected() const;
 };
 
@@ -38,6 +39,10 @@ struct Failures {
     /// None if the group is of no failure's scene.
     [[nodiscard]] const FailureResult* find(const std::string& group) const;
 };
+
+/// Of a row of results.jsonl: whether its method refused the settings, and its scene's failure says
+/// that it does. Such a cell is no fault of a run.
+bool is_expected_refusal(const nlohmann::json& row, const std::vector<FailureCase>& failures);
 
 /// Of a run directory's rows and the matrix that its run.json keeps. Without "failures" in the
 /// matrix, nothing. A measure that cannot be taken is a result without value. Throws Error(usage)

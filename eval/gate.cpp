@@ -235,7 +235,15 @@ class Check {
         const GateClass& gate = class_of(run_.classes, group.params);
         used_.insert(gate.name);
         if (!group.faults.empty()) return add(faults_of(group), group.name, gate.name);
+        if (group.is_refused()) return add({judge_refusal(group)}, group.name, gate.name);
         add(judge_sound(group, gate), group.name, gate.name);
+    }
+
+    Verdict judge_refusal(const RunGroup& group) const {
+        const std::string reason = group.refused.front().value("reason", "");
+        if (!baseline_.groups.contains(group.name))
+            return fact(Outcome::not_gated, "refused", "as expected: " + reason);
+        return fact(Outcome::fail, "refused", reason + ", and the baseline has numbers");
     }
 
     std::vector<Verdict> judge_sound(const RunGroup& group, const GateClass& gate) {

@@ -31,9 +31,10 @@ Verdict verdict_of(const FailureResult& result, const FailureCase& failure) {
     verdict.group = result.group;
     verdict.metric = std::string(failure.measure.signature->name);
     if (result.value && std::isfinite(*result.value)) verdict.value = result.value;
-    const std::string found = verdict_name(result.verdict) + " (limits " +
-                              failure_number(failure.pass_below) + ", " +
-                              failure_number(failure.fails_above) + ")";
+    const std::string limits = " (limits " + failure_number(failure.pass_below) + ", " +
+                               failure_number(failure.fails_above) + ")";
+    const bool is_refusal = result.verdict == FailureVerdict::refuses;
+    const std::string found = verdict_name(result.verdict) + (is_refusal ? "" : limits);
     verdict.text = result.expected.empty() ? "nothing expected"
                                            : found + ", expected: " + words(result.expected);
     if (!result.reason.empty()) verdict.text += "; " + result.reason;
@@ -42,8 +43,10 @@ Verdict verdict_of(const FailureResult& result, const FailureCase& failure) {
 
 std::vector<Json> rows_of(const GateRun& run) {
     std::vector<Json> rows;
-    for (const RunGroup& group : run.groups)
+    for (const RunGroup& group : run.groups) {
         rows.insert(rows.end(), group.rows.begin(), group.rows.end());
+        rows.insert(rows.end(), group.refused.begin(), group.refused.end());
+    }
     return rows;
 }
 

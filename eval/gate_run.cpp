@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "eval/budget.h"
+#include "eval/failure_results.h"
 #include "eval/frame_jobs.h"
 #include "eval/matrix.h"
 #include "eval/run_directory.h"
@@ -109,8 +110,13 @@ class Reader {
             return CellFault{cell.name, CellFaultKind::non_finite,
                              std::to_string(count) + " values are not finite"};
         }
+        if (is_expected_refusal(row, matrix_.failures)) return staleness_of(cell, row);
         if (row.value("status", "") != "ok" || !row.value("metrics", Json()).is_object())
             return CellFault{cell.name, CellFaultKind::failed, row.value("reason", "no metrics")};
+        return staleness_of(cell, row);
+    }
+
+    std::optional<CellFault> staleness_of(const Cell& cell, const Json& row) const {
         const std::string stale = staleness(cell, row);
         if (stale.empty()) return std::nullopt;
         return CellFault{cell.name, CellFaultKind::stale, stale};
@@ -129,6 +135,7 @@ class Reader {
             return;
         }
         const Json& row = rows_.at(cell.name);
+        if (is_expected_refusal(row, matrix_.failures)) return group.refused.push_back(row);
         if (group.rows.empty()) group.question = question_of(row);
         group.rows.push_back(row);
     }

@@ -32,8 +32,11 @@ struct RunGroup {
     nlohmann::json params;             ///< of the first cell, for selections
     nlohmann::json question;           ///< what must be the same for two results to be comparable
     std::vector<nlohmann::json> rows;  ///< of its sound cells
+    std::vector<nlohmann::json> refused;  ///< of cells that their method refuses, as expected
     std::vector<CellFault> faults;
 
+    /// Nothing to hold against a baseline: it is expected that no cell can be made.
+    [[nodiscard]] bool is_refused() const { return rows.empty() && faults.empty(); }
     /// By seed. None unless every row has the metric: leaving one out would flatter the rest.
     [[nodiscard]] std::optional<std::vector<double>> errors(const GateMetric& metric) const;
     [[nodiscard]] std::vector<double> times_s() const;  ///< total, by seed

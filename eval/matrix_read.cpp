@@ -124,6 +124,32 @@ void check_cells(const JsonValue& json, const Matrix& matrix) {
     }
 }
 
+/// Scene paths are relative to the file that they stand in: once they stand in another one, they
+/// have to lead to the same place, and be spelled as one would there, so that excludes match them.
+void move_scenes(Json& json, const fs::path& from, const fs::path& to) {
+    if (json.is_array()) {
+        for (Json& each : json) move_scenes(each, from, to);
+    } else if (json.is_object() && json.contains("scene")) {
+        const auto moved = [&](const Json& scene) {
+            const fs::path file = (from / scene.get<std::string>()).lexically_normal();
+            return file.lexically_proximate(to).generic_string();
+        };
+        Json& scene = json["scene"];
+        if (!scene.is_array()) scene = moved(scene);
+        if (!scene.is_array()) return;
+        for (Json& each : scene) each = moved(each);
+    }
+}
+
+constexpr const char* kWithScenes[] = {"axes", "fixed", "exclude", "include", "failures"};
+
+/// One spelling of each path, by which excludes and the needs of failures find it.
+void spell_scenes_alike(Matrix& matrix) {
+    const fs::path folder = fs::path(matrix.file).parent_path().lexically_normal();
+    for (const char* key : kWithScenes)
+        if (matrix.document.contains(key)) move_scenes(matrix.document[key], folder, folder);
+}
+
 }  // namespace
 
 Matrix matrix_of(Json document, const std::string& file) {
@@ -144,27 +170,11 @@ Matrix matrix_of(Json document, const std::string& file) {
     check_cells(json, matrix);
     (void)read_gate_classes(json);
     if (json.has("reproduction")) (void)read_reproduction(json);
+    spell_scenes_alike(matrix);
     return matrix;
 }
 
 namespace {
-
-/// Scene paths are relative to the file that they stand in: once they stand in another one, they
-/// have to lead to the same place, and be spelled as one would there, so that excludes match them.
-void move_scenes(Json& json, const fs::path& from, const fs::path& to) {
-    if (json.is_array()) {
-        for (Json& each : json) move_scenes(each, from, to);
-    } else if (json.is_object() && json.contains("scene")) {
-        const auto moved = [&](const Json& scene) {
-            const fs::path file = (from / scene.get<std::string>()).lexically_normal();
-            return file.lexically_proximate(to).generic_string();
-        };
-        Json& scene = json["scene"];
-        if (!scene.is_array()) scene = moved(scene);
-        if (!scene.is_array()) return;
-        for (Json& each : scene) each = moved(each);
-    }
-}
 
 /// The same for files of images: {NAME} in them stays as it is.
 void move_file(Json& json, const fs::path& from, const fs::path& to) {
@@ -174,9 +184,8 @@ void move_file(Json& json, const fs::path& from, const fs::path& to) {
 }
 
 void move_files(Json& base, const fs::path& from, const fs::path& to) {
-    for (const char* key : {"axes", "fixed", "exclude", "include", "failures"}) {
+    for (const char* key : kWithScenes)
         if (base.contains(key)) move_scenes(base[key], from, to);
-    }
     if (base.contains("reference")) move_file(base["reference"], from, to);
     if (!base.contains("images")) return;
     for (Json& image : base["images"]) move_file(image, from, to);

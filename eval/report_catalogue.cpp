@@ -20,12 +20,24 @@ struct VerdictMark {
     const char* mark;
     const char* css;
 };
-constexpr std::array<VerdictMark, 3> kMarks = {{{FailureVerdict::pass, "✓", "yes"},
+constexpr std::array<VerdictMark, 4> kMarks = {{{FailureVerdict::pass, "✓", "yes"},
                                                 {FailureVerdict::degraded, "≈", "trend"},
-                                                {FailureVerdict::fails, "✗", "no"}}};
+                                                {FailureVerdict::fails, "✗", "no"},
+                                                {FailureVerdict::refuses, "⊘", "none"}}};
+
+constexpr const char* kLegend =
+    "✓ passes, ≈ is degraded, ✗ fails, ⊘ cannot be run, as the method refuses what the scene "
+    "needs; "
+    "– the measure says nothing of the method. ";
 
 const VerdictMark& mark_of(FailureVerdict verdict) {
     return *std::ranges::find(kMarks, verdict, &VerdictMark::verdict);
+}
+
+std::string cell_text(const FailureResult& result) {
+    const bool is_refusal = result.verdict == FailureVerdict::refuses;
+    return std::string(mark_of(result.verdict).mark) + " " +
+           (is_refusal ? "cannot" : failure_number(result.value));
 }
 
 std::string expected_text(const FailureResult& result) {
@@ -67,7 +79,8 @@ std::string tally_text(const Failures& failures) {
     const auto number = [](std::size_t count) { return std::to_string(count); };
     return number(failures.results.size()) + " results on " + number(failures.cases.size()) +
            " scenes: " + number(counts.verdicts[0]) + " pass, " + number(counts.verdicts[1]) +
-           " degraded, " + number(counts.verdicts[2]) + " fail. " + number(counts.unexpected) +
+           " degraded, " + number(counts.verdicts[2]) + " fail, " + number(counts.verdicts[3]) +
+           " cannot be run. " + number(counts.unexpected) +
            " of them otherwise than expected; of " + number(counts.open) + " nothing was expected.";
 }
 
@@ -93,7 +106,7 @@ std::string chart_cell(const FailureCase& failure, const Results& results) {
     const VerdictMark& mark = mark_of(worst.verdict);
     const bool is_unexpected =
         std::ranges::any_of(results, [](const auto* each) { return each->is_unexpected(); });
-    std::string html = std::string(mark.mark) + " " + failure_number(worst.value);
+    std::string html = cell_text(worst);
     if (is_unexpected) html += " <b>!</b>";
     if (results.size() > 1) html += "<small>" + escaped(variant_text(worst.params)) + "</small>";
     return "<td class=\"" + std::string(mark.css) + (is_unexpected ? " odd" : "") + "\" title=\"" +
@@ -181,7 +194,7 @@ using namespace markdown;
 std::string markdown_cell(const Results& results) {
     if (results.empty()) return "–";
     const FailureResult& worst = *results.front();
-    std::string text = std::string(mark_of(worst.verdict).mark) + " " + failure_number(worst.value);
+    std::string text = cell_text(worst);
     if (std::ranges::any_of(results, [](const auto* each) { return each->is_unexpected(); }))
         text += " **!**";
     return text;
@@ -218,9 +231,10 @@ std::string catalogue_html(const ReportData& data) {
     std::string html =
         "<section id=\"catalogue\">\n<h2>Where methods fail</h2>\n<p class=\"note\">Each scene "
         "shows one failure and nothing else; its number tells that very failure, and grows with "
-        "it. Limits were set from the reference before any method was measured. ✓ passes, ≈ is "
-        "degraded, ✗ fails; <b>!</b> is otherwise than expected. A cell holds the worst of the "
-        "method's factors and windows. <span class=\"js-only\">A click opens it in the "
+        "it. Limits were set from the reference before any method was measured. " +
+        std::string(kLegend) +
+        "<b>!</b> is otherwise than expected. A cell holds the worst of the method's factors and "
+        "windows. <span class=\"js-only\">A click opens it in the "
         "viewer.</span></p>\n<p class=\"note\">" +
         escaped(tally_text(failures)) + "</p>\n" + chart_html(failures, failure_methods(failures)) +
         "<h3>What each failure is</h3>\n<div class=\"cases\">\n";
@@ -234,8 +248,8 @@ std::string catalogue_markdown(const ReportData& data) {
     const auto methods = failure_methods(failures);
     Cells names{"failure", "measure"};
     for (const FailureMethod& method : methods) names.push_back(plain(method.label));
-    std::string text = "\n## Where methods fail\n\n" + tally_text(failures) +
-                       " ✓ passes, ≈ is degraded, ✗ fails, **!** is otherwise than expected. Every "
+    std::string text = "\n## Where methods fail\n\n" + tally_text(failures) + " " + kLegend +
+                       "**!** is otherwise than expected. Every "
                        "number grows with its failure; a cell holds the worst of the method's "
                        "factors and windows. Limits were set from the reference.\n\n" +
                        head(names);

@@ -86,13 +86,20 @@ std::string libraries(const ReportData& data) {
     return text.empty() ? "unknown" : text;
 }
 
+std::size_t expected_refusals(const ReportData& data) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        data.rows, [&](const Json& row) { return is_expected_refusal(row, data.failures.cases); }));
+}
+
 std::string cells(const ReportData& data) {
     const std::size_t planned = data.run.value("cells", data.rows.size());
-    const std::size_t failed = failed_rows(data);
+    const std::size_t refused = expected_refusals(data);
+    const std::size_t failed = failed_rows(data) - refused;
     std::string text = std::to_string(data.rows.size());
     if (planned > data.rows.size()) text += " of " + std::to_string(planned) + " so far";
     text += " in " + counted(data.groups.size(), "group");
-    return text + (failed == 0 ? "; none failed" : "; " + std::to_string(failed) + " failed");
+    text += failed == 0 ? "; none failed" : "; " + std::to_string(failed) + " failed";
+    return text + (refused == 0 ? "" : "; " + std::to_string(refused) + " refused, as expected");
 }
 
 /// Parameters with one value in the whole matrix.

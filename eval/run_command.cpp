@@ -51,8 +51,9 @@ void print_results(const ReportData& data) {
     std::printf("%s", convergence_table(data.convergence).c_str());
     if (data.reproduction) print_verdicts(*data.reproduction);
     for (const nlohmann::json& row : data.rows) {
-        if (row["status"] == "ok") continue;
-        std::fprintf(stderr, "failed: %s: %s\n", row["cell"].get<std::string>().c_str(),
+        if (row["status"] == "ok" || is_expected_refusal(row, data.failures.cases)) continue;
+        std::fprintf(stderr, "%s: %s: %s\n", row["status"].get<std::string>().c_str(),
+                     row["cell"].get<std::string>().c_str(),
                      row["reason"].get<std::string>().c_str());
     }
 }
@@ -70,6 +71,8 @@ ExitCode print_estimate(const Matrix& matrix, const RunArguments& arguments,
 void print_counts(const RunSummary& summary) {
     std::printf("%zu cells: %zu done now, %zu from an earlier run, %zu failed, %zu missing\n",
                 summary.cells, summary.done, summary.kept, summary.failed, summary.missing);
+    if (summary.refused > 0)
+        std::printf("beside these, %zu that their methods refuse, as expected\n", summary.refused);
     if (summary.stale == 0) return;
     std::fprintf(
         stderr,

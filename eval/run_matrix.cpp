@@ -14,11 +14,13 @@
 #include "eval/cell_sources.h"
 #include "eval/commands.h"
 #include "eval/equal_time.h"
+#include "eval/failure_results.h"
 #include "eval/frame_jobs.h"
 #include "eval/progress.h"
 #include "eval/reference_error.h"
 #include "eval/reference_store.h"
 #include "eval/run_directory.h"
+#include "eval/spent.h"
 
 namespace vecino {
 namespace {
@@ -31,12 +33,6 @@ double traced_samples(const RenderSettings& settings) {
     return FrameJob{{}, settings}.samples();
 }
 
-/// What a run took, over all its goes.
-struct Spent {
-    double seconds = 0;
-    double samples = 0;
-};
-
 class Runner {
   public:
     Runner(const Matrix& matrix, RunDirectory directory, const RunOptions& options)
@@ -46,7 +42,7 @@ class Runner {
         simd_width_ = options.simd_width > 0 ? options.simd_width : simd_widths().front();
         run_ = {{"name", matrix.name}, {"config", matrix.document}, {"versions", versions}};
         run_["versions"]["simd_width"] = simd_width_;
-        require_same_matrix();
+        before_ = spent_before(directory_, matrix.name);
         for (Cell& cell : cells_) {
             load_scene_of(cell);
             cell.settings.simd_width = simd_width_;
@@ -91,28 +87,6 @@ class Runner {
     }
 
   private:
-    // Another matrix's results would be lost when results.jsonl is written anew.
-    void require_same_matrix() {
-        const std::string file = directory_.file("run.json");
-        if (!std::filesystem::exists(file)) return;
-        const nlohmann::json before = nlohmann::json::parse(read_file(file), nullptr, false);
-        const nlohmann::json found =
-            before.is_object() ? before.value("name", nlohmann::json()) : "";
-        const std::string name = found.is_string() ? found.get<std::string>() : found.dump();
-        if (name == matrix_.name) return read_spent(before);
-        throw Error(ExitCode::usage, directory_.path() + ": found results of the matrix \"" + name +
-                                         "\", allowed: \"" + matrix_.name +
-                                         "\" or an empty directory");
-    }
-
-    void read_spent(const nlohmann::json& before) {
-        const auto number = [&](const char* key) {
-            const nlohmann::json value = before.value(key, nlohmann::json());
-            return value.is_number() ? value.get<double>() : 0.0;
-        };
-        before_ = {number("seconds"), number("samples")};
-    }
-
     void load_scene_of(const Cell& cell) {
         if (traces_scene(matrix_, cell)) {
             if (scenes_.contains(cell.scene)) return;
@@ -191,7 +165,10 @@ class Runner {
         summary.cells = cells_.size();
         summary.done = done_cells_;
         summary.missing = cells_.size() - rows_.size();
-        for (const auto& [name, row] : rows_) summary.failed += row["status"] != "ok" ? 1 : 0;
+        for (const auto& [name, row] : rows_) {
+            if (row["status"] == "ok") continue;
+            ++(is_expected_refusal(row, matrix_.failures) ? summary.refused : summary.failed);
+        }
     }
 
     /// Samples per second, from a short render of the same kind.
@@ -296,27 +273,33 @@ class Runner {
         if (interrupted()) throw Error(ExitCode::interrupted, "interrupted");
         static const StoredReference none;
         CellInput input{&matrix_, nullptr, &none};
-        try {
-            input.reference = &reference_of(*job.cells.front());
-        } catch (const WriteError&) {
-            throw;
-        } catch (const Error& error) {  // a file that is gone or broken: its cells alone fail
-            if (error.code() == ExitCode::interrupted) throw;
-            for (const Cell* cell : job.cells) add_row(*cell, none, failed_result(error.what()));
-            return;
-        }
         MethodRender traced;
         std::optional<GuideStore> guides;
-        if (job.traces) {
-            traced = trace(job);
-            input.traced = &traced;
-            input.scene = &scenes_.at(job.cells.front()->scene);
-            input.guides = &guides.emplace(*input.scene, job.settings, matrix_.repeat);
+        std::vector<ShiftedView> shifted;
+        try {
+            input.reference = &reference_of(*job.cells.front());
+            if (job.traces) {
+                traced = trace(job);
+                input.traced = &traced;
+                input.scene = &scenes_.at(job.cells.front()->scene);
+                input.guides = &guides.emplace(*input.scene, job.settings, matrix_.repeat);
+            }
+            shifted = shifted_views(job);
+        } catch (const Error& error) {
+            if (!is_of_cell(error)) throw;
+            return fail_job(job, *input.reference, error);
         }
-        const std::vector<ShiftedView> shifted = shifted_views(job);
         input.shifted = shifted;
         for (const Cell* cell : job.cells)
             add_row(*cell, *input.reference, cell_result(*cell, input, directory_));
+    }
+
+    /// Its cells alone: a reference that is gone or broken, or a method that refuses its settings.
+    void fail_job(const FrameJob& job, const StoredReference& reference, const Error& error) {
+        const bool has_reference = !reference.file.empty();
+        for (const Cell* cell : job.cells)
+            add_row(*cell, reference,
+                    has_reference ? error_result(*cell, error) : failed_result(error.what()));
     }
 
     void add_row(const Cell& cell, const StoredReference& reference, const nlohmann::json& result) {

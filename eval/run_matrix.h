@@ -19,6 +19,7 @@ struct RunSummary {
     std::size_t kept = 0;    ///< from an earlier run
     std::size_t stale = 0;   ///< of these, by another build or on another state of their scene file
     std::size_t failed = 0;  ///< in this run or before
+    std::size_t refused = 0;  ///< beside these, by methods of which a failure's file expects it
     std::size_t missing = 0;  ///< not done yet: interrupted, or not among those asked for
     bool was_interrupted = false;
 };

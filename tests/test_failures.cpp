@@ -129,6 +129,26 @@ TEST_CASE("what a scene needs takes the place of axes, other axes stay", "[failu
         CHECK(names.contains(name));
 }
 
+TEST_CASE("a scene has its needs however a matrix spells its path", "[failure][matrix]") {
+    SmallCatalogue small;
+    small.add("f19_not_finite");
+    const std::string spelled = kFolder + "/./../failures/f19_not_finite.json";
+    small.matrix["include"] = {{{"scheme", "joint_bilateral"}, {"scene", spelled}}};
+    small.matrix["exclude"] = {{{"scheme", "mean"}, {"scene", spelled}}};
+    small.dir.write("small.json", small.matrix.dump());
+    std::set<std::string> groups;
+    for (const Cell& cell : expand(load_matrix(small.dir.path("small.json")))) {
+        CAPTURE(cell.name);
+        groups.insert(cell.group);
+        CHECK(cell.settings.size == Extent{96, 96});
+        CHECK(cell.settings.spp == 16);
+        CHECK(cell.inject.size() == (cell.kind == CellKind::scheme ? 3 : 0));
+    }
+    CHECK(groups.contains("f19_not_finite.joint_bilateral.f2.w3"));
+    CHECK(groups.contains("f19_not_finite.nearest.f2"));
+    CHECK_FALSE(groups.contains("f19_not_finite.mean.f2.w3"));
+}
+
 TEST_CASE("a small part of the catalogue holds its verdicts", "[failure]") {
     SmallCatalogue small;
     for (const char* name : {"f02_ignored_centre", "f04_parallel_surfaces", "f06_flush_emitter",
