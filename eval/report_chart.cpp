@@ -79,7 +79,8 @@ bool samplers_vary(const ReportData& data) {
 /// What is joined: results that differ in the work that they were given alone. Schemes, of which
 /// there are many at one spp, are not.
 std::string curve_of(const GroupSummary& group) {
-    const bool is_scheme = group.params.contains("window") || group.params.contains("reduction");
+    const bool is_scheme =
+        group.params.contains("window") || group.params.value("reduction", 1) > 1;
     if (is_scheme) return "";
     nlohmann::json params = group.params;
     for (const char* key : {"spp", "spp_asked", "seed", "budget", "time_budget"}) params.erase(key);
@@ -243,7 +244,7 @@ Grid<glm::u8vec3> chart_raster(const ReportData& data) {
     for (const auto& [scene, points] : scenes) {
         const cv::Point corner(kLeft + number % columns * step.x, kTop + number / columns * step.y);
         ++number;
-        draw_text(picture, scene + ": psnr_float_db against time of tracing and reconstruction",
+        draw_text(picture, scene + ": psnr_float_db against time",
                   {corner.x, corner.y - 12 * kScale}, text_style(kInk, true));
         draw_grid(picture, axes, corner);
         draw_ceilings(picture, data, scene, {axes, corner});

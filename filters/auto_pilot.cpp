@@ -210,7 +210,7 @@ class PilotRun {
     }
 
     void assume() {
-        constexpr double kUsualNeedy = 0.06, kUsualRecords = 1.06 / 64;
+        constexpr double kUsualRecords = 1.06 / 64;
         pilot_.rates = nominal_rates(kUsualRays);
         pilot_.found.needy_pixels = kUsualNeedy * pilot_.found.pixels;
         pilot_.found.records_at_8 = kUsualRecords * pilot_.found.pixels;
@@ -293,16 +293,15 @@ class PilotRun {
         pilot_.found.records = errors;
     }
 
-    /// What edges do not explain of the noise is that of records.
+    /// Noise is that of needy pixels, or of records: the more pixels are needy, the more of the
+    /// former.
     void take_noise(const StagedRender& a, const StagedRender& b, const SurfaceRecordsPlan& plan,
                     RecordErrors& errors) {
         noise_ = 0.5 * difference(a.render.frame.radiance, b.render.frame.radiance).mean;
-        RecordErrors edges = errors;
-        edges.record_noise = edges.bias_at_8 = 0;
-        PilotFindings only;
-        only.records = edges;
-        const double of_edges = surface_records_error(only, plan);
-        errors.record_noise = std::max(noise_ - of_edges, 0.1 * noise_) / record_noise_share(plan);
+        const double needy = static_cast<double>(a.counts.needy_pixels);
+        const double share = std::min(needy / frames_.pixels(pilot_.reduction), 1.0);
+        errors.edge_noise = noise_ * share * share / edge_noise_share(plan);
+        errors.record_noise = noise_ * (1 - share * share) / record_noise_share(plan);
     }
 
     /// What halved cells change beyond noise is bias of the coarse ones.

@@ -98,6 +98,11 @@ double surface_records_cost(const PilotFindings& found, const CostRates& rates,
            (base + refined) * rates.record_s;
 }
 
+double edge_noise_share(const SurfaceRecordsPlan& plan) {
+    const double samples = std::max(plan.edge_spp + plan.pilot_spp, 1);
+    return std::pow(128.0 / samples, kEdgeSlope);
+}
+
 double record_noise_share(const SurfaceRecordsPlan& plan) {
     const auto share = [](int paths) { return std::pow(512.0 / paths, kRecordSlope); };
     const double refined = plan.levels > 0 ? kRefinedArea : 0;
@@ -106,12 +111,11 @@ double record_noise_share(const SurfaceRecordsPlan& plan) {
 
 double surface_records_error(const PilotFindings& found, const SurfaceRecordsPlan& plan) {
     const RecordErrors from = found.records.value_or(kUsualErrors);
-    const double edges = std::max(plan.edge_spp + plan.pilot_spp, 1) / 128.0;
     const double halvings = std::log2(8.0 / plan.cell);
     const double bias = from.bias_at_8 * std::pow(kBiasPerHalving, -halvings) *
                         std::pow(kBiasPerLevel, -plan.levels);
-    return from.edge_noise * std::pow(edges, -kEdgeSlope) +
-           from.record_noise * record_noise_share(plan) + bias + from.unexplained;
+    return from.edge_noise * edge_noise_share(plan) + from.record_noise * record_noise_share(plan) +
+           bias + from.unexplained;
 }
 
 Schedule plan_path(const PilotFindings& found, const CostRates& rates, double seconds) {

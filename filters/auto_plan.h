@@ -54,7 +54,12 @@ struct RecordErrors {
 /// Of a usual scene, for what cannot be measured.
 constexpr RecordErrors kUsualErrors{0.25e-6, 0.8e-6, 1.2e-6, 0};
 
-/// The noise of a plan's records, held against that of records of 512 paths.
+/// Of a usual frame: so many of its pixels are needy.
+constexpr double kUsualNeedy = 0.06;
+
+/// The noise of a plan's needy pixels, held against that of 128 samples each, and of its records,
+/// held against that of 512 paths each.
+double edge_noise_share(const SurfaceRecordsPlan& plan);
 double record_noise_share(const SurfaceRecordsPlan& plan);
 
 struct PilotFindings {

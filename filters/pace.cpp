@@ -73,7 +73,11 @@ void Pace::choose_pilot(double sample_s, SurfaceRecordsPlan& plan) {
 void Pace::choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan) {
     found_.needy_pixels = here.needy_pixels;
     found_.records_at_8 = here.records_at_16 * found_.record_growth;
-    if (!found_.records) found_.records = kUsualErrors;
+    if (!found_.records) {
+        found_.records = kUsualErrors;
+        const double share = here.needy_pixels / found_.pixels;
+        found_.records->edge_noise *= std::max(share / kUsualNeedy, 1.0);
+    }
     if (here.record_noise > 0) found_.records->record_noise = here.record_noise;
     rates_.first_sample_s = 0;  // they are done
     rates_.record_path_s = here.path_s * per_work_s();
@@ -93,10 +97,11 @@ void Pace::choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan) {
     // What was timed is much of a short stage, and may have been disturbed.
     const double path_s =
         std::clamp(level.path_s, 0.7 * rates_.record_path_s, 1.6 * rates_.record_path_s);
-    // Levels to come have about so many records for each of this one, with so many paths.
+    // Each level to come has about twice the records of the one before; the first halved one half
+    // of those that there are.
     const double finer = level.level == 0 ? kRefinedShare * plan.levels *
                                                 plan.refined_record_paths / plan.record_paths
-                                          : plan.levels - level.level;
+                                          : std::exp2(plan.levels - level.level + 1) - 2;
     const double all_s = static_cast<double>(level.records) * (1 + finer) * path_s;
     const double paths = (records_until_s_ - watch_.seconds()) / all_s - kRecordStart;
     int& chosen = level.level == 0 ? plan.record_paths : plan.refined_record_paths;
