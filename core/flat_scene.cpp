@@ -102,7 +102,7 @@ class Flattener {
     void put_emitters_last() {
         std::vector<std::size_t> order(quads_.list.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::ranges::stable_partition(order, [&](std::size_t i) {
+        std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
             return std::bit_cast<std::int32_t>(quads_.list[i].fields[kLight]) < 0;
         });
         Surfaces<std::array<glm::vec3, 4>> sorted;
