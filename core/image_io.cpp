@@ -71,7 +71,9 @@ Source open_source(const std::string& path) {
 
 [[noreturn]] void mismatch(const Source& source, const std::string& found,
                            const std::string& allowed) {
-    throw Error(ExitCode::mismatch, source.path + ": found " + found + ", allowed: " + allowed);
+    // Names of channels are the file's: they may hold anything.
+    throw Error(ExitCode::mismatch,
+                one_line(source.path + ": found " + found + ", allowed: " + allowed));
 }
 
 std::string list(std::span<const std::string> names) {
@@ -315,8 +317,8 @@ ChannelFile load_channels(const std::string& path, std::span<const std::string> 
     } while (next_part(source));
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (found[i].values.empty())
-            throw Error(ExitCode::mismatch, path + ": found no channel " + names[i] +
-                                                ", allowed: one of those that are there");
+            throw Error(ExitCode::mismatch, one_line(path + ": found no channel " + names[i] +
+                                                     ", allowed: one of those that are there"));
     }
     file.channels = std::move(found);
     return file;

@@ -4,6 +4,7 @@
 // pass, the channel), Mitsuba 3.9 (a name of the user's choice, then R G B, X Y Z, T or I; those of
 // its manual and of its types are known), pbrt-v4 (today's names and those of its first releases).
 #include "core/renderer_channels.h"
+#include "core/files.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,6 +14,7 @@
 
 #include "core/channel_file.h"
 #include "core/error.h"
+#include "core/files.h"
 #include "core/image_format.h"
 #include "core/image_io.h"
 #include "core/json_read.h"
@@ -193,11 +195,11 @@ std::optional<std::vector<std::string>> find_plane(Plane plane,
                                                       : scalar_layers(name, channels);
         if (found.empty()) continue;
         if (found.size() == 1) return found.begin()->second;
-        throw Error(ExitCode::mismatch, path + ": found " + name_of(plane) + " in channels " +
-                                            joined(found.begin()->second) + " and in " +
-                                            joined(std::next(found.begin())->second) +
-                                            ", allowed: --channel " + name_of(plane) +
-                                            "=... to say which");
+        throw Error(ExitCode::mismatch,
+                    one_line(path + ": found " + name_of(plane) + " in channels " +
+                             joined(found.begin()->second) + " and in " +
+                             joined(std::next(found.begin())->second) + ", allowed: --channel " +
+                             name_of(plane) + "=... to say which"));
     }
     if (plane != Plane::radiance) return std::nullopt;
     const auto only = grey(channels);
