@@ -42,20 +42,19 @@ constexpr Structure kStructures[] = {
 constexpr double kPathsPerSample[] = {1, 2, 4, 8, 16, 32};
 
 // Records of fewer paths are not worth their place.
-constexpr int kLeastPaths = 16;
-constexpr int kLeastEdgeSpp = 4;
+constexpr int kFewestPaths = 16, kFewestEdgeSpp = 4;
 
 SurfaceRecordsPlan plan_by(const Structure& structure, double edge_spp, double paths) {
     // First samples find what the others are for: the more of these, the more of them.
     const double pilot = std::clamp(edge_spp / 16, 1.0, 32.0);
-    const int record_paths = in_packets(std::max(paths, double{kLeastPaths}), kMostPaths);
+    const int record_paths = in_packets(std::max(paths, double{kFewestPaths}), kMostPaths);
     SurfaceRecordsPlan plan;
     plan.pilot_spp = static_cast<int>(std::bit_floor(static_cast<unsigned>(pilot)));
     plan.edge_spp = in_packets(edge_spp, kMostEdgeSpp);
     plan.cell = structure.cell;
     plan.levels = structure.levels;
     plan.record_paths = record_paths;
-    plan.refined_record_paths = std::max(record_paths / 2, kLeastPaths);
+    plan.refined_record_paths = std::max(record_paths / 2, kFewestPaths);
     plan.fit_sigma = structure.fit_sigma;
     plan.refine_tau = structure.refine_tau;
     return plan;
@@ -65,7 +64,7 @@ SurfaceRecordsPlan plan_by(const Structure& structure, double edge_spp, double p
 SurfaceRecordsPlan filled(const PilotFindings& found, const CostRates& rates,
                           const std::function<SurfaceRecordsPlan(double)>& plan_of,
                           double seconds) {
-    double low = kLeastEdgeSpp, high = kMostEdgeSpp;
+    double low = kFewestEdgeSpp, high = kMostEdgeSpp;
     while (high > 1.01 * low) {
         const double middle = std::sqrt(low * high);
         (surface_records_cost(found, rates, plan_of(middle)) <= seconds ? low : high) = middle;
