@@ -86,7 +86,7 @@ class Plan {
                                     const BaselineGroup& then) {
         if (then.host != group.host()) return "another host";
         const auto verdict = judge_time(group, gate, then);
-        return verdict && verdict->outcome == Outcome::fail ? "time: " + verdict->text : "";
+        return verdict && verdict->outcome == GateOutcome::fail ? "time: " + verdict->text : "";
     }
 
     void add_line(const RunGroup& group, const GateClass& gate, const GateMetric& metric,
@@ -112,7 +112,7 @@ class Plan {
             return;
         }
         for (const Verdict& verdict : judge_quality(group, gate, then)) {
-            if (verdict.metric != metric.name || verdict.outcome != Outcome::fail) continue;
+            if (verdict.metric != metric.name || verdict.outcome != GateOutcome::fail) continue;
             line.mark = '!';
             line.note += (line.note.empty() ? "" : "; ") + verdict.rule + ": " + verdict.text;
         }

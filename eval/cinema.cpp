@@ -121,7 +121,8 @@ void add_parameters(const Rows& rows, Table& table) {
     table.add("method", [](const Json& row) { return row["method"]; });
     for (const auto& [name, found] : values) {
         if (found.size() < 2 || apart.contains(name)) continue;
-        table.add(name, [&](const Json& row) { return row["params"].value(name, Json()); });
+        table.add(name,
+                  [name = name](const Json& row) { return row["params"].value(name, Json()); });
     }
     table.add("seed", [](const Json& row) { return row.value("seed", Json()); });
 }

@@ -81,7 +81,9 @@ std::vector<Rival> rivals_of(std::span<const GroupSummary> groups) {
 void name_rivals(std::vector<Rival>& rivals) {
     for (Rival& rival : rivals) {
         std::string name = rival.params.value("method", rival.name);
-        for (const auto& [key, value] : rival.params.items()) {
+        for (const auto& parameter : rival.params.items()) {
+            const std::string& key = parameter.key();
+            const Json& value = parameter.value();
             const bool varies = std::ranges::any_of(rivals, [&](const Rival& other) {
                 return other.params.value("method", Json()) ==
                            rival.params.value("method", Json()) &&

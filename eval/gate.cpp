@@ -109,7 +109,7 @@ Verdict judge_seeds(const Pair& pair) {
     return verdict;
 }
 
-Verdict fact(Outcome outcome, const std::string& rule, const std::string& text) {
+Verdict fact(GateOutcome outcome, const std::string& rule, const std::string& text) {
     Verdict verdict;
     verdict.outcome = outcome;
     verdict.rule = rule;
@@ -121,14 +121,14 @@ Side side_of(const MetricInfo& metric, const MetricSpread& spread, std::size_t s
     return {relative_deviation(metric, spread), seeds};
 }
 
-Outcome outcome_of(const Verdict& verdict) {
-    return *verdict.margin_db >= 0 ? Outcome::pass : Outcome::fail;
+GateOutcome outcome_of(const Verdict& verdict) {
+    return *verdict.margin_db >= 0 ? GateOutcome::pass : GateOutcome::fail;
 }
 
 std::vector<Verdict> judge_pair(const Pair& pair) {
     std::vector<Verdict> verdicts{judge_mean(pair)};
     verdicts.front().outcome = outcome_of(verdicts.front());
-    const bool holds = verdicts.front().outcome == Outcome::pass;
+    const bool holds = verdicts.front().outcome == GateOutcome::pass;
     if (!holds || pair.now_side.seeds < 2 || pair.then_side.seeds < 2) return verdicts;
     verdicts.push_back(judge_seeds(pair));
     verdicts.back().outcome = outcome_of(verdicts.back());
@@ -142,11 +142,11 @@ std::vector<Verdict> judge_metric(const RunGroup& group, const GateClass& gate,
     const auto errors = group.errors(metric);
     const bool has_baseline = then != baseline.metrics.end();
     if (!errors && !has_baseline)
-        return {fact(Outcome::not_gated, "not measured", "neither side has a value")};
-    if (!errors) return {fact(Outcome::fail, "not measured", "the baseline has a value")};
+        return {fact(GateOutcome::not_gated, "not measured", "neither side has a value")};
+    if (!errors) return {fact(GateOutcome::fail, "not measured", "the baseline has a value")};
     if (!has_baseline)
-        return {
-            fact(Outcome::fail, "no baseline", "the baseline lacks this metric: vecino accept")};
+        return {fact(GateOutcome::fail, "no baseline",
+                     "the baseline lacks this metric: vecino accept")};
     const MetricSpread now = spread_over_seeds(*metric.info, *errors);
     return judge_pair({metric, tolerance_db, gate.k_sigma, gate.either_way, *errors, now,
                        then->second, side_of(*metric.info, now, errors->size()),
@@ -171,7 +171,7 @@ std::vector<Verdict> faults_of(const RunGroup& group) {
     std::vector<Verdict> verdicts;
     for (const CellFault& fault : group.faults)
         verdicts.push_back(
-            fact(Outcome::fail, rule_of(fault.kind), fault.cell + ": " + fault.reason));
+            fact(GateOutcome::fail, rule_of(fault.kind), fault.cell + ": " + fault.reason));
     return verdicts;
 }
 
@@ -206,15 +206,16 @@ class Check {
         for (const RunGroup& group : run_.groups) judge(group);
         for (const auto& [name, group] : baseline_.groups) {
             if (run_.find(name) != nullptr) continue;
-            add({fact(Outcome::fail, "missing cell", "the baseline has it, the matrix does not")},
+            add({fact(GateOutcome::fail, "missing cell",
+                      "the baseline has it, the matrix does not")},
                 name, "");
         }
         find_unused();
         const auto badness = [](const Verdict& v) {
             const double margin = v.margin_db.value_or(-std::numeric_limits<double>::infinity());
-            return std::pair(v.outcome == Outcome::fail   ? 0
-                             : v.outcome == Outcome::pass ? 1
-                                                          : 2,
+            return std::pair(v.outcome == GateOutcome::fail   ? 0
+                             : v.outcome == GateOutcome::pass ? 1
+                                                              : 2,
                              v.rule == "time" ? std::numeric_limits<double>::infinity() : margin);
         };
         std::ranges::stable_sort(result_.verdicts, {}, badness);
@@ -242,25 +243,25 @@ class Check {
     Verdict judge_refusal(const RunGroup& group) const {
         const std::string reason = group.refused.front().value("reason", "");
         if (!baseline_.groups.contains(group.name))
-            return fact(Outcome::not_gated, "refused", "as expected: " + reason);
-        return fact(Outcome::fail, "refused", reason + ", and the baseline has numbers");
+            return fact(GateOutcome::not_gated, "refused", "as expected: " + reason);
+        return fact(GateOutcome::fail, "refused", reason + ", and the baseline has numbers");
     }
 
     std::vector<Verdict> judge_sound(const RunGroup& group, const GateClass& gate) {
         const auto found = baseline_.groups.find(group.name);
         if (found == baseline_.groups.end())
-            return {fact(Outcome::fail, "no baseline", "new: vecino accept takes it in")};
+            return {fact(GateOutcome::fail, "no baseline", "new: vecino accept takes it in")};
         const BaselineGroup& then = found->second;
         const std::string changed = differences(then.question, group.question);
         if (!same_question(then.question, group.question))
-            return {fact(Outcome::fail, "another question", changed + ": vecino accept")};
+            return {fact(GateOutcome::fail, "another question", changed + ": vecino accept")};
         if (baseline_of(group, gate) == then) ++result_.identical;
         std::vector<Verdict> verdicts;
         if (changed.empty()) {
             verdicts = judge_quality(group, gate, then);
         } else {
-            verdicts.push_back(
-                fact(Outcome::not_gated, "measured budget", "samples were measured, " + changed));
+            verdicts.push_back(fact(GateOutcome::not_gated, "measured budget",
+                                    "samples were measured, " + changed));
         }
         if (auto time = judge_time(group, gate, then)) verdicts.push_back(std::move(*time));
         return verdicts;
@@ -320,7 +321,7 @@ std::vector<Verdict> judge_quality(const RunGroup& group, const GateClass& gate,
     return verdicts;
 }
 
-std::size_t GateResult::count(Outcome outcome) const {
+std::size_t GateResult::count(GateOutcome outcome) const {
     return static_cast<std::size_t>(std::ranges::count(verdicts, outcome, &Verdict::outcome));
 }
 

@@ -29,11 +29,11 @@
 
 namespace vecino {
 
-enum class Outcome { pass, fail, not_gated };
+enum class GateOutcome { pass, fail, not_gated };
 
 /// Numbers are in the metric's unit. None where the rule has no such thing.
 struct Verdict {
-    Outcome outcome = Outcome::pass;
+    GateOutcome outcome = GateOutcome::pass;
     std::string rule;  ///< "mean", "seeds", "time", "missing cell", "no baseline", ...
     std::string class_name;
     std::string group;
@@ -53,10 +53,10 @@ struct GateResult {
     std::size_t identical = 0;  ///< groups whose numbers are those of the baseline to the digit
     std::vector<std::string> unused;  ///< classes that no cell is of
 
-    [[nodiscard]] std::size_t count(Outcome outcome) const;
+    [[nodiscard]] std::size_t count(GateOutcome outcome) const;
     [[nodiscard]] bool has_non_finite() const;
     [[nodiscard]] bool passed() const {
-        return count(Outcome::fail) == 0 && count(Outcome::pass) > 0;
+        return count(GateOutcome::fail) == 0 && count(GateOutcome::pass) > 0;
     }
 };
 

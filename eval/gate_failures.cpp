@@ -23,9 +23,9 @@ std::string words(const std::vector<FailureVerdict>& verdicts) {
 
 Verdict verdict_of(const FailureResult& result, const FailureCase& failure) {
     Verdict verdict;
-    verdict.outcome = result.is_unexpected()    ? Outcome::fail
-                      : result.expected.empty() ? Outcome::not_gated
-                                                : Outcome::pass;
+    verdict.outcome = result.is_unexpected()    ? GateOutcome::fail
+                      : result.expected.empty() ? GateOutcome::not_gated
+                                                : GateOutcome::pass;
     verdict.rule = kRule;
     verdict.class_name = failure.id;
     verdict.group = result.group;
@@ -53,7 +53,9 @@ std::vector<Json> rows_of(const GateRun& run) {
 /// Failures first, as they are in other checks.
 void sort(GateResult& result) {
     std::ranges::stable_sort(result.verdicts, {}, [](const Verdict& verdict) {
-        return verdict.outcome == Outcome::fail ? 0 : verdict.outcome == Outcome::pass ? 1 : 2;
+        return verdict.outcome == GateOutcome::fail   ? 0
+               : verdict.outcome == GateOutcome::pass ? 1
+                                                      : 2;
     });
 }
 

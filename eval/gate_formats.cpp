@@ -16,13 +16,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-const char* outcome_name(Outcome outcome) {
+const char* outcome_name(GateOutcome outcome) {
     switch (outcome) {
-        case Outcome::pass:
+        case GateOutcome::pass:
             return "pass";
-        case Outcome::fail:
+        case GateOutcome::fail:
             return "fail";
-        case Outcome::not_gated:
+        case GateOutcome::not_gated:
             break;
     }
     return "not_gated";
@@ -78,23 +78,24 @@ std::string test_case(const GateResult& result, const Verdict& v) {
                              "\"";
     const std::string why = xml(numbers_text(v));
     switch (v.outcome) {
-        case Outcome::fail:
+        case GateOutcome::fail:
             return open + ">\n      <failure type=\"" + xml(v.rule) + "\" message=\"" + why +
                    "\">" + why + "</failure>\n    </testcase>\n";
-        case Outcome::not_gated:
+        case GateOutcome::not_gated:
             return open + ">\n      <skipped message=\"" + why + "\"/>\n    </testcase>\n";
-        case Outcome::pass:
+        case GateOutcome::pass:
             break;
     }
     return open + ">\n      <system-out>" + why + "</system-out>\n    </testcase>\n";
 }
 
 std::string counts_text(const std::vector<const Verdict*>& verdicts) {
-    const auto count = [&](Outcome outcome) {
+    const auto count = [&](GateOutcome outcome) {
         return std::to_string(std::ranges::count(verdicts, outcome, &Verdict::outcome));
     };
-    return " tests=\"" + std::to_string(verdicts.size()) + "\" failures=\"" + count(Outcome::fail) +
-           "\" errors=\"0\" skipped=\"" + count(Outcome::not_gated) + "\"";
+    return " tests=\"" + std::to_string(verdicts.size()) + "\" failures=\"" +
+           count(GateOutcome::fail) + "\" errors=\"0\" skipped=\"" + count(GateOutcome::not_gated) +
+           "\"";
 }
 
 /// The first cell of a group, with its images.
@@ -119,9 +120,9 @@ std::string image_tags(const GateRun& run, const std::string& group_name) {
 Json gate_json(const GateResult& result) {
     Json json{{"passed", result.passed()},
               {"matrix", result.matrix},
-              {"comparisons", result.count(Outcome::pass) + result.count(Outcome::fail)},
-              {"failed", result.count(Outcome::fail)},
-              {"not_gated", result.count(Outcome::not_gated)},
+              {"comparisons", result.count(GateOutcome::pass) + result.count(GateOutcome::fail)},
+              {"failed", result.count(GateOutcome::fail)},
+              {"not_gated", result.count(GateOutcome::not_gated)},
               {"groups", result.groups},
               {"identical", result.identical},
               {"unused_classes", result.unused},
@@ -167,7 +168,7 @@ std::string gate_ctest(const GateResult& result, const GateRun& run) {
     }
     // One image of each name is all that a test can have: that of the worst verdict.
     for (const Verdict& v : result.verdicts) {
-        if (v.outcome != Outcome::fail) break;
+        if (v.outcome != GateOutcome::fail) break;
         const std::string images = image_tags(run, v.group);
         if (!images.empty()) return tags + images;
     }

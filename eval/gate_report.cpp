@@ -58,7 +58,7 @@ Row row_of(const Verdict& v) {
 
 using Verdicts = std::vector<const Verdict*>;
 
-Verdicts verdicts_of(const GateResult& result, Outcome outcome) {
+Verdicts verdicts_of(const GateResult& result, GateOutcome outcome) {
     Verdicts found;
     for (const Verdict& verdict : result.verdicts)
         if (verdict.outcome == outcome) found.push_back(&verdict);
@@ -85,7 +85,7 @@ std::string text_table(std::span<const Verdict* const> verdicts) {
 /// Reasons of one kind in one line: what differs between groups is left to --json.
 std::string not_gated_text(const GateResult& result) {
     std::map<std::string, std::size_t> reasons;
-    for (const Verdict* verdict : verdicts_of(result, Outcome::not_gated)) {
+    for (const Verdict* verdict : verdicts_of(result, GateOutcome::not_gated)) {
         const std::string& text = verdict->text;
         const std::size_t reason = verdict->rule == "time" ? text.find("not gated") : 0;
         ++reasons[verdict->rule + ": " + text.substr(std::min(reason, text.size()))];
@@ -166,8 +166,8 @@ std::string details(const std::string& summary, const std::string& body) {
 }  // namespace
 
 std::string gate_headline(const GateResult& result) {
-    const std::size_t failed = result.count(Outcome::fail);
-    const std::size_t judged = failed + result.count(Outcome::pass);
+    const std::size_t failed = result.count(GateOutcome::fail);
+    const std::size_t judged = failed + result.count(GateOutcome::pass);
     const std::string what = "of " + std::to_string(judged) + " comparisons in " +
                              std::to_string(result.groups) + " groups of " + result.matrix;
     if (judged == 0)
@@ -179,8 +179,8 @@ std::string gate_headline(const GateResult& result) {
 
 std::string gate_text(const GateResult& result) {
     std::string text = one_line(gate_headline(result)) + "\n";
-    if (!result.passed()) text += text_table(verdicts_of(result, Outcome::fail));
-    const Verdicts passed = verdicts_of(result, Outcome::pass);
+    if (!result.passed()) text += text_table(verdicts_of(result, GateOutcome::fail));
+    const Verdicts passed = verdicts_of(result, GateOutcome::pass);
     const std::span closest(passed.data(), std::min(kClosestShown, passed.size()));
     if (!closest.empty())
         text += "\n" + std::to_string(passed.size()) + " passed, closest to their limits:\n" +
@@ -196,8 +196,8 @@ std::string gate_markdown(const GateResult& result) {
         const std::size_t taken = text.size() + kMarkdownTailBytes;
         return taken < kMostMarkdownBytes ? kMostMarkdownBytes - taken : 0;
     };
-    if (!result.passed()) text += markdown_table(verdicts_of(result, Outcome::fail), room());
-    const Verdicts passed = verdicts_of(result, Outcome::pass);
+    if (!result.passed()) text += markdown_table(verdicts_of(result, GateOutcome::fail), room());
+    const Verdicts passed = verdicts_of(result, GateOutcome::pass);
     if (!passed.empty())
         text += details(std::to_string(passed.size()) + " passed, closest to their limits first",
                         markdown_table(passed, room()));

@@ -60,14 +60,14 @@ std::optional<Verdict> judge_time(const RunGroup& group, const GateClass& gate,
     }
     const std::string reason = why_not_gated(group, gate, baseline, times.size());
     if (!reason.empty()) {
-        verdict.outcome = Outcome::not_gated;
+        verdict.outcome = GateOutcome::not_gated;
         verdict.text += ", " + reason;
         return verdict;
     }
     const double allowed = 1 + *gate.time_tolerance;
     verdict.limit = allowed * baseline.time_s.mean;
     verdict.margin_db = 100 * (allowed - *ratio.low);
-    verdict.outcome = *ratio.low > allowed ? Outcome::fail : Outcome::pass;
+    verdict.outcome = *ratio.low > allowed ? GateOutcome::fail : GateOutcome::pass;
     verdict.text += ", fails where the whole interval is above " + number_text(allowed, 3);
     return verdict;
 }

@@ -49,7 +49,8 @@ ImageSource read_reference_source(const JsonValue& json);
 
 nlohmann::json image_source_schema();
 
-/// What stands for this program, the scene's name and file, the sides of the image and the options of a render.
+/// What stands for this program, the scene's name and file, the sides of the image and the options
+/// of a render.
 Placeholders placeholders_of(const std::string& scene_file, const RenderSettings& settings);
 
 /// A template with every {NAME} replaced. {{ and }} are braces. Precondition: read_image_source has

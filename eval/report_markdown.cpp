@@ -97,7 +97,7 @@ std::string numbers(const ReportData& data) {
 std::string range_text(const ClaimResult& result) {
     std::vector<const PairResult*> pairs;
     for (const PairResult& pair : result.pairs) {
-        if (pair.outcome != Outcome::missing) pairs.push_back(&pair);
+        if (pair.outcome != PairOutcome::missing) pairs.push_back(&pair);
     }
     if (pairs.empty()) return "–";
     const auto value = [](const PairResult* pair) { return pair->difference_db.mean; };
@@ -154,21 +154,21 @@ std::string claims(const ReportData& data, const Variant& variant) {
 }
 
 std::string tally(const ReportReproduction& shown) {
-    constexpr Verdict kAll[] = {Verdict::reproduced, Verdict::trend, Verdict::not_reproduced,
-                                Verdict::not_testable};
+    constexpr ClaimVerdict kAll[] = {ClaimVerdict::reproduced, ClaimVerdict::trend,
+                                     ClaimVerdict::not_reproduced, ClaimVerdict::not_testable};
     Cells names{""};
-    for (const Verdict verdict : kAll) names.push_back(verdict_text(verdict));
+    for (const ClaimVerdict verdict : kAll) names.push_back(verdict_text(verdict));
     std::string text = "\n" + head(names);
     const auto add = [&](const std::string& name, const auto& count) {
         Cells cells{plain(name)};
-        for (const Verdict verdict : kAll) cells.push_back(std::to_string(count(verdict)));
+        for (const ClaimVerdict verdict : kAll) cells.push_back(std::to_string(count(verdict)));
         text += row(cells);
     };
-    add("numbers", [&](Verdict verdict) {
+    add("numbers", [&](ClaimVerdict verdict) {
         return std::ranges::count(shown.result.items, verdict, &ItemResult::verdict);
     });
     for (const Variant& variant : shown.specification.variants) {
-        add("claims, " + variant.label, [&](Verdict verdict) {
+        add("claims, " + variant.label, [&](ClaimVerdict verdict) {
             return std::ranges::count_if(shown.result.claims, [&](const auto& results) {
                 return std::ranges::any_of(results, [&](const ClaimResult& result) {
                     return result.variant == variant.id && result.region.empty() &&

@@ -17,16 +17,16 @@ namespace {
 using Json = nlohmann::json;
 
 struct VerdictStyle {
-    Verdict verdict;
+    ClaimVerdict verdict;
     const char* mark;
     const char* css;
 };
-constexpr std::array<VerdictStyle, 4> kVerdicts = {{{Verdict::reproduced, "✓", "yes"},
-                                                    {Verdict::trend, "≈", "trend"},
-                                                    {Verdict::not_reproduced, "✗", "no"},
-                                                    {Verdict::not_testable, "–", "untested"}}};
+constexpr std::array<VerdictStyle, 4> kVerdicts = {{{ClaimVerdict::reproduced, "✓", "yes"},
+                                                    {ClaimVerdict::trend, "≈", "trend"},
+                                                    {ClaimVerdict::not_reproduced, "✗", "no"},
+                                                    {ClaimVerdict::not_testable, "–", "untested"}}};
 
-std::string badge(Verdict verdict) {
+std::string badge(ClaimVerdict verdict) {
     const auto* const style = std::ranges::find(kVerdicts, verdict, &VerdictStyle::verdict);
     return "<span class=\"verdict " + std::string(style->css) + "\">" + style->mark + " " +
            verdict_text(verdict) + "</span>";
@@ -40,7 +40,7 @@ std::string signed_db(double value) {
 
 /// "+3.20 ± 0.15"
 std::string difference_text(const PairResult& pair) {
-    if (pair.outcome == Outcome::missing) return "no value";
+    if (pair.outcome == PairOutcome::missing) return "no value";
     const Estimate& d = pair.difference_db;
     std::string text = signed_db(d.mean) + " ± " + number_text(0.5 * (*d.high - *d.low), 2);
     if (pair.published_db) text += " (" + signed_db(*pair.published_db) + ")";
@@ -55,7 +55,7 @@ std::string counts_text(const ClaimResult& result) {
     if (result.missing > 0) text += ", " + std::to_string(result.missing) + " missing";
     std::vector<double> differences;
     for (const PairResult& pair : result.pairs) {
-        if (pair.outcome != Outcome::missing) differences.push_back(pair.difference_db.mean);
+        if (pair.outcome != PairOutcome::missing) differences.push_back(pair.difference_db.mean);
     }
     if (differences.empty()) return text;
     const auto [least, most] = std::ranges::minmax(differences);
@@ -64,15 +64,15 @@ std::string counts_text(const ClaimResult& result) {
     return text + " dB";
 }
 
-const char* outcome_mark(Outcome outcome) {
+const char* outcome_mark(PairOutcome outcome) {
     switch (outcome) {
-        case Outcome::holds:
+        case PairOutcome::holds:
             return "✓";
-        case Outcome::fails:
+        case PairOutcome::fails:
             return "✗";
-        case Outcome::open:
+        case PairOutcome::open:
             return "?";
-        case Outcome::missing:
+        case PairOutcome::missing:
             break;
     }
     return "–";
@@ -147,7 +147,7 @@ std::string item_row(const ReportData& data, const Item& item, const ItemResult&
         about += "<p>The slowest: " + group_link(data, result.slowest) + ".</p>";
     about += command_html(item_command(data, item)) + "</details>";
     std::string verdict = badge(result.verdict);
-    if (result.verdict != Verdict::not_testable && item.within > 0)
+    if (result.verdict != ClaimVerdict::not_testable && item.within > 0)
         verdict += "<span class=\"why\">within " + number_text(item.within, 0) + " points</span>";
     if (!result.remark.empty())
         verdict += "<span class=\"why\">" + escaped(result.remark) + "</span>";
@@ -236,11 +236,11 @@ std::string tally(const ReportReproduction& shown) {
             html += data_cell(verdict_text(style.verdict), std::to_string(count(style.verdict)));
         html += "</tr>\n";
     };
-    row("numbers", [&](Verdict verdict) {
+    row("numbers", [&](ClaimVerdict verdict) {
         return std::ranges::count(shown.result.items, verdict, &ItemResult::verdict);
     });
     for (const Variant& variant : shown.specification.variants) {
-        row("claims, " + variant.label, [&](Verdict verdict) {
+        row("claims, " + variant.label, [&](ClaimVerdict verdict) {
             return std::ranges::count_if(shown.result.claims, [&](const auto& results) {
                 return find_result(results, variant.id, "")->verdict == verdict;
             });

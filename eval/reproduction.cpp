@@ -90,18 +90,18 @@ class Evaluation {
         return nullptr;
     }
 
-    static void count(ClaimResult& result, Outcome outcome) {
+    static void count(ClaimResult& result, PairOutcome outcome) {
         switch (outcome) {
-            case Outcome::holds:
+            case PairOutcome::holds:
                 ++result.holds;
                 break;
-            case Outcome::fails:
+            case PairOutcome::fails:
                 ++result.fails;
                 break;
-            case Outcome::open:
+            case PairOutcome::open:
                 ++result.open;
                 break;
-            case Outcome::missing:
+            case PairOutcome::missing:
                 ++result.missing;
         }
     }
@@ -111,13 +111,13 @@ class Evaluation {
         std::set<std::string> scenes;
         for (const PairResult& pair : result.pairs) scenes.insert(pair.scene);
         for (const std::string& scene : scenes) {
-            const auto has = [&](Outcome outcome) {
+            const auto has = [&](PairOutcome outcome) {
                 return std::ranges::any_of(result.pairs, [&](const PairResult& pair) {
                     return pair.scene == scene && pair.outcome == outcome;
                 });
             };
-            for (const Outcome outcome :
-                 {Outcome::holds, Outcome::missing, Outcome::open, Outcome::fails}) {
+            for (const PairOutcome outcome : {PairOutcome::holds, PairOutcome::missing,
+                                              PairOutcome::open, PairOutcome::fails}) {
                 if (!has(outcome)) continue;
                 count(result, outcome);
                 break;
@@ -125,11 +125,11 @@ class Evaluation {
         }
     }
 
-    static Verdict verdict(const ClaimResult& result) {
+    static ClaimVerdict verdict(const ClaimResult& result) {
         const std::size_t tested = result.holds + result.fails + result.open;
-        if (tested == 0 || result.missing > 0) return Verdict::not_testable;
-        if (result.holds == tested) return Verdict::reproduced;
-        return 2 * result.holds > tested ? Verdict::trend : Verdict::not_reproduced;
+        if (tested == 0 || result.missing > 0) return ClaimVerdict::not_testable;
+        if (result.holds == tested) return ClaimVerdict::reproduced;
+        return 2 * result.holds > tested ? ClaimVerdict::trend : ClaimVerdict::not_reproduced;
     }
 
     static const GroupSummary* slowest_of(const std::vector<const GroupSummary*>& groups) {
@@ -177,9 +177,9 @@ class Evaluation {
         const bool outside = *decisive->low > item.published + item.within ||
                              *decisive->high < item.published - item.within;
         const bool published_inside = is_within(result.ours->mean);
-        result.verdict = inside && published_inside     ? Verdict::reproduced
-                         : outside && !published_inside ? Verdict::not_reproduced
-                                                        : Verdict::trend;
+        result.verdict = inside && published_inside     ? ClaimVerdict::reproduced
+                         : outside && !published_inside ? ClaimVerdict::not_reproduced
+                                                        : ClaimVerdict::trend;
     }
 
     void time(const Item& item, const GroupSummary& slowest, ItemResult& result) const {
@@ -245,15 +245,15 @@ bool has_whole_image_test(const Claim& claim) {
 
 }  // namespace
 
-std::string verdict_text(Verdict verdict) {
+std::string verdict_text(ClaimVerdict verdict) {
     switch (verdict) {
-        case Verdict::reproduced:
+        case ClaimVerdict::reproduced:
             return "reproduced";
-        case Verdict::trend:
+        case ClaimVerdict::trend:
             return "trend";
-        case Verdict::not_reproduced:
+        case ClaimVerdict::not_reproduced:
             return "not reproduced";
-        case Verdict::not_testable:
+        case ClaimVerdict::not_testable:
             break;
     }
     return "not testable";

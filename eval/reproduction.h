@@ -15,16 +15,16 @@
 
 namespace vecino {
 
-enum class Verdict {
+enum class ClaimVerdict {
     reproduced,      ///< every comparison holds; a share is within its points, interval and all
     trend,           ///< most comparisons hold; a share's interval overlaps
     not_reproduced,  ///< half of the comparisons or fewer hold; a share lies outside
     not_testable,    ///< results or seeds are missing, or the times are another machine's
 };
 
-std::string verdict_text(Verdict verdict);
+std::string verdict_text(ClaimVerdict verdict);
 
-enum class Outcome {
+enum class PairOutcome {
     holds,    ///< the 95 % interval excludes equality (or the margin)
     fails,    ///< so does it on the other side
     open,     ///< the interval includes equality, or published_db lies on its other side
@@ -35,7 +35,7 @@ enum class Outcome {
 /// One pair of results of a claim.
 struct PairResult {
     std::string scene, of, than;  ///< groups
-    Outcome outcome = Outcome::missing;
+    PairOutcome outcome = PairOutcome::missing;
     Estimate difference_db;  ///< of - than, quality or noise, over common seeds
     /// The same where the variant's own results are others than those that decide (tested_at).
     /// None: they are the same, lack a value, or are too few seeds for it.
@@ -45,14 +45,14 @@ struct PairResult {
 struct ClaimResult {
     std::string variant;
     RegionName region;  ///< instead of the whole image; tests that name regions keep theirs
-    Verdict verdict = Verdict::not_testable;
+    ClaimVerdict verdict = ClaimVerdict::not_testable;
     /// Pairs; scenes if any one is enough. A test without a pair is missing once.
     std::size_t holds = 0, fails = 0, open = 0, missing = 0;
     std::vector<PairResult> pairs;
 };
 
 struct ItemResult {
-    Verdict verdict = Verdict::not_testable;
+    ClaimVerdict verdict = ClaimVerdict::not_testable;
     std::optional<Estimate> ours;    ///< in the item's unit
     std::optional<Estimate> tested;  ///< a share where the first variant is tested, if elsewhere
     double ratio = 0;                ///< ours / published; 0 without ours

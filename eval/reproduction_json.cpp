@@ -8,15 +8,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string outcome_text(Outcome outcome) {
+std::string outcome_text(PairOutcome outcome) {
     switch (outcome) {
-        case Outcome::holds:
+        case PairOutcome::holds:
             return "holds";
-        case Outcome::fails:
+        case PairOutcome::fails:
             return "fails";
-        case Outcome::open:
+        case PairOutcome::open:
             return "open";
-        case Outcome::missing:
+        case PairOutcome::missing:
             break;
     }
     return "missing";
@@ -27,7 +27,8 @@ Json pair_json(const PairResult& pair) {
               {"of", pair.of},
               {"than", pair.than},
               {"outcome", outcome_text(pair.outcome)}};
-    if (pair.outcome != Outcome::missing) json["difference_db"] = estimate_json(pair.difference_db);
+    if (pair.outcome != PairOutcome::missing)
+        json["difference_db"] = estimate_json(pair.difference_db);
     if (pair.published_db) json["published_db"] = *pair.published_db;
     return json;
 }

@@ -21,17 +21,17 @@ std::vector<double> values_of(const GroupSummary& group, Quantity quantity,
     return quantity == Quantity::noise ? statistics->noise_by_seed : statistics->mse;
 }
 
-Outcome interval_outcome(const Estimate& difference, const ClaimTest& test) {
+PairOutcome interval_outcome(const Estimate& difference, const ClaimTest& test) {
     const double sign = test.relation == Relation::lower ? -1 : 1;
     double low = sign * *(sign > 0 ? difference.low : difference.high);
     double high = sign * *(sign > 0 ? difference.high : difference.low);
     const double margin = test.margin_db;
     if (test.relation == Relation::same) {
-        if (low > margin || high < -margin) return Outcome::fails;
-        return low > -margin && high < margin ? Outcome::holds : Outcome::open;
+        if (low > margin || high < -margin) return PairOutcome::fails;
+        return low > -margin && high < margin ? PairOutcome::holds : PairOutcome::open;
     }
-    if (low > margin) return Outcome::holds;
-    return high < margin ? Outcome::fails : Outcome::open;
+    if (low > margin) return PairOutcome::holds;
+    return high < margin ? PairOutcome::fails : PairOutcome::open;
 }
 
 /// What a pair is compared by, by seed: numerator and denominator of what is higher when `of` is.
@@ -83,7 +83,7 @@ nlohmann::json identity(const GroupSummary& group, const Selection& tested_at) {
 
 PairResult compare_pair(const GroupSummary& of, const GroupSummary& than, const ClaimTest& test,
                         const Place& place) {
-    PairResult pair{of.scene, of.group, than.group, Outcome::missing, {}, {}};
+    PairResult pair{of.scene, of.group, than.group, PairOutcome::missing, {}, {}};
     const PairValues values = pair_values(of, than, test, place);
     const auto difference = ratio_db(values.above, values.below);
     if (!difference) return pair;
@@ -94,11 +94,11 @@ PairResult compare_pair(const GroupSummary& of, const GroupSummary& than, const 
 
 void hold_against_published(PairResult& pair, const GroupSummary* of, const GroupSummary* than,
                             const Comparing& comparing) {
-    if (pair.outcome == Outcome::missing || of == nullptr || than == nullptr) return;
+    if (pair.outcome == PairOutcome::missing || of == nullptr || than == nullptr) return;
     pair.published_db = point_db(pair_values(*of, *than, comparing.test, comparing.place));
     if (!pair.published_db) return;
     const Estimate point{*pair.published_db, *pair.published_db, *pair.published_db};
-    if (interval_outcome(point, comparing.test) != pair.outcome) pair.outcome = Outcome::open;
+    if (interval_outcome(point, comparing.test) != pair.outcome) pair.outcome = PairOutcome::open;
 }
 
 }  // namespace vecino

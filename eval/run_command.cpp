@@ -28,15 +28,16 @@ struct RunArguments {
 
 void print_verdicts(const ReportReproduction& reproduction) {
     for (const Variant& variant : reproduction.specification.variants) {
-        std::map<Verdict, int> counts;
+        std::map<ClaimVerdict, int> counts;
         for (const auto& results : reproduction.result.claims) {
             for (const ClaimResult& result : results) {
                 if (result.variant == variant.id && result.region.empty()) ++counts[result.verdict];
             }
         }
         std::string text;
-        for (const Verdict verdict : {Verdict::reproduced, Verdict::trend, Verdict::not_reproduced,
-                                      Verdict::not_testable}) {
+        for (const ClaimVerdict verdict :
+             {ClaimVerdict::reproduced, ClaimVerdict::trend, ClaimVerdict::not_reproduced,
+              ClaimVerdict::not_testable}) {
             text += text.empty() ? "" : ", ";
             text += std::to_string(counts[verdict]) + " " + verdict_text(verdict);
         }

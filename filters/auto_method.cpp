@@ -70,10 +70,28 @@ Json facts_of(const Decision& decision, const Chosen& run) {
             {"pilot_compares", decision.pilot.found.path.has_value()}};
 }
 
-MethodRender run_path(const MethodRequest& request, Decision& decision, const Progress& progress) {
+/// Spends a little of the time to find out how many samples the rest has room for. Returns it.
+double time_path(const MethodRequest& request, double seconds, Decision& decision) {
+    constexpr double kShare = 0.04;
+    constexpr int kManyPackets = 8;  // fewer are known well enough
+    const PilotFindings& found = decision.pilot.found;
+    if (decision.plans.path.spp < kManyPackets * found.lanes) return 0;
+    CostRates rates = decision.pilot.rates;
+    const PathTiming timing =
+        time_path(request.scene, request.settings, rates.path_sample_s, kShare * seconds);
+    rates.path_sample_s = timing.sample_s;
+    decision.plans.path = plan_path(found, rates, seconds - timing.spent_s - timing.start_s);
+    return timing.spent_s;
+}
+
+/// seconds: that are left, if a clock decides.
+MethodRender run_path(const MethodRequest& request, Decision& decision,
+                      std::optional<double> seconds, const Progress& progress) {
+    const double timed_s = seconds ? time_path(request, *seconds, decision) : 0.0;
     Chosen run{find_method("path"), request};
     run.request.settings.spp = decision.plans.path.spp;
     MethodRender out = run.method.run(run.request, progress);
+    out.render.statistics.trace_s += timed_s;
     out.facts.update(facts_of(decision, run));
     return out;
 }
@@ -104,8 +122,9 @@ MethodRender run_auto(const MethodRequest& request, const Progress& progress) {
     Decision decision{pilot, choose_schedule(pilot.found, pilot.rates, left_s)};
     const int threads = request.settings.threads;
     Pace pace(left_s, threads > 0 ? threads : default_thread_count(), pilot.found);
+    const auto path_s = budget_s ? std::optional(left_s) : std::nullopt;
     MethodRender out = decision.plans.takes_path
-                           ? run_path(request, decision, progress)
+                           ? run_path(request, decision, path_s, progress)
                            : run_records(request, decision, budget_s ? &pace : nullptr, progress);
     RenderStatistics& statistics = out.render.statistics;
     const double run_s = statistics.trace_s + out.reconstruct_s;

@@ -151,12 +151,14 @@ class PilotRun {
     }
 
     Pilot run() {
-        (void)frames_.path(pilot_.reduction, 1, kSeedA);  // threads start, memory is touched
-        const double start_s = watch_.seconds();          // no part of any budget
+        const PathFrame first = frames_.path(pilot_.reduction, 1, kSeedA);  // touches memory
+        const double start_s = watch_.seconds();  // threads start: no part of any budget
         watch_ = {};
         (void)frames_.take_scene_s();
         if (is_hurried()) {
             assume();
+            // Where noise alone tells that there is hardly any: four frames, as long as the first.
+            if (4 * first.seconds <= kPilotShare * *budget_s_) measure_path();
         } else {
             look();
             compare();
@@ -180,7 +182,8 @@ class PilotRun {
     /// their start is what counts.
     [[nodiscard]] double look_pixels() const {
         constexpr double kShare = 0.02, kPixel_s = 600e-9;
-        return std::clamp(kShare * budget_s_.value_or(0) / kPixel_s, 4096.0, 65536.0);
+        return std::clamp(kShare * budget_s_.value_or(0) / kPixel_s, is_hurried() ? 2048.0 : 4096.0,
+                          65536.0);
     }
 
     /// First, small frames of each: what a path costs, and what there is to see.
@@ -265,6 +268,7 @@ class PilotRun {
             errors.slope = std::clamp(std::log2(few / many) / octaves, 0.8, 1.6);
         }
         pilot_.found.path = errors;
+        pilot_.found.lanes = path_a_.lanes;
         if (!budget_s_) return;
         const double path_s =
             std::min(path_a_.seconds, path_b_.seconds) / (frames_.pixels(reduction) * kManySpp);
@@ -359,6 +363,25 @@ class PilotRun {
 };
 
 }  // namespace
+
+PathTiming time_path(const Scene& scene, const RenderSettings& settings, double guess_s,
+                     double seconds) {
+    PilotFrames frames(scene, settings, {});
+    const auto packets = [&](int reduction) {
+        return seconds / (frames.pixels(reduction) * kManySpp * guess_s);
+    };
+    int reduction = 1;
+    while (packets(reduction) < 1 && frames.pixels(reduction) > kLeastPixels) ++reduction;
+    const double pixels = frames.pixels(reduction);
+    const int few = kManySpp * std::clamp(static_cast<int>(packets(reduction) / 4), 1, 256);
+    const int many = 3 * few;
+    const double few_s = frames.path(reduction, few, kSeedA).seconds;
+    const double many_s = frames.path(reduction, many, kSeedA).seconds;
+    // Two, as a render takes some time before its first sample.
+    const double all = many_s / (pixels * many);
+    const double sample_s = std::clamp((many_s - few_s) / (pixels * (many - few)), 0.65 * all, all);
+    return {sample_s, many_s - sample_s * pixels * many, few_s + many_s};
+}
 
 Pilot run_pilot(const Scene& scene, const RenderSettings& settings, std::optional<double> budget_s,
                 const Progress& progress) {

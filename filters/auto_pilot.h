@@ -27,6 +27,17 @@ constexpr double kPilotShare = 0.06;
 Pilot run_pilot(const Scene& scene, const RenderSettings& settings, std::optional<double> budget_s,
                 const Progress& progress);
 
+struct PathTiming {
+    double sample_s;
+    double start_s;  ///< of a render, before its first
+    double spent_s;
+};
+
+/// What a sample of path tracing takes, where it is expected to take guess_s: by about so many
+/// seconds' work. A pilot's frames are too small to tell.
+PathTiming time_path(const Scene& scene, const RenderSettings& settings, double guess_s,
+                     double seconds);
+
 /// Seconds that plain path tracing takes for settings.spp by nominal rates.
 double nominal_budget_s(const Pilot& pilot, const RenderSettings& settings);
 

@@ -51,11 +51,6 @@ class Lattice {
         return parameters_.mask == LatticeMask::square || (at.x / step + at.y / step) % 2 == 0;
     }
 
-    struct Source {
-        std::uint32_t pixel;
-        double distance;
-    };
-
     [[nodiscard]] bool counts(std::size_t pixel, std::size_t source) const {
         if (parameters_.kernel == LatticeKernel::distance3d_normal)
             return partial_.is_finite(source) && partial_.guide().has_like_normal(pixel, source);
@@ -85,16 +80,7 @@ class Lattice {
     bool interpolate(std::size_t pixel) {
         const bool by_surface = parameters_.kernel == LatticeKernel::surface;
         if (by_surface && partial_.guide().is_edge(pixel)) return false;
-        const std::vector<Source> sources = sources_of(pixel);
-        double mean_distance = 0;
-        for (const Source& source : sources)
-            mean_distance += source.distance / static_cast<double>(sources.size());
-        Blend blend;
-        for (const Source& source : sources) {
-            const double weight =
-                source_weight(parameters_.weighting, source.distance, mean_distance);
-            blend.add(partial_.frame(), source.pixel, partial_.guide().hit(source.pixel), weight);
-        }
+        const Blend blend = partial_.blend(sources_of(pixel), parameters_.weighting);
         if (!(blend.weight() > 0) || !std::isfinite(blend.weight())) return false;
         if (by_surface) {
             partial_.store(pixel, blend);

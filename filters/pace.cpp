@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace vecino {
 namespace {
@@ -34,6 +35,11 @@ int geometric_mean(int low, int high) {
     return static_cast<int>(std::sqrt(double{1} * low * high));
 }
 
+/// Of a part, where its whole may be nothing.
+double share_of(double part, double whole, double usual) {
+    return whole > 0 ? part / whole : usual;
+}
+
 }  // namespace
 
 double quickest(const Trial& trial) {
@@ -47,12 +53,25 @@ Pace::Pace(double seconds, int threads, const PilotFindings& found)
       threads_(threads),
       found_(found),
       rates_(nominal_rates(1)),
-      until_s_(seconds) {}
+      until_s_((1 - kReserve) * seconds) {}
 
-void Pace::begin(double share_of_frame) {
-    watch_ = {};
-    found_.pixels *= share_of_frame;
-    until_s_ = (1 - kReserve) * share_of_frame * seconds_;
+void Pace::choose_first(std::vector<BandRows>& bands, const std::vector<BandSurvey>& surveys) {
+    BandSurvey whole;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < surveys.size(); ++i) {
+        whole.needy_pixels += surveys[i].needy_pixels;
+        whole.records += surveys[i].records;
+        whole.pilot_s += surveys[i].pilot_s;
+        if (surveys[i].needy_pixels > surveys[first].needy_pixels) first = i;
+    }
+    std::swap(bands.front(), bands[first]);
+    const BandSurvey& own = surveys[first];
+    const double share = own.pilot_s / whole.pilot_s;
+    needy_density_ = share_of(own.needy_pixels, whole.needy_pixels, share) / share;
+    record_density_ = share_of(own.records, whole.records, share) / share;
+    found_.pixels = own.pixels;
+    const double spent_s = watch_.seconds();
+    until_s_ = spent_s + share * (until_s_ - spent_s);
 }
 
 void Pace::take_stage(double work_s, double seconds) {
@@ -70,15 +89,24 @@ void Pace::choose_pilot(double sample_s, SurfaceRecordsPlan& plan) {
         plan.pilot_spp *= 2;
 }
 
+void Pace::take_records(const PaceFindings& here) {
+    RecordErrors& errors = *found_.records;
+    // What was tried may have missed what there is.
+    constexpr double kLeast = 0.01;
+    errors.record_noise = std::max(here.record_noise, kLeast * kUsualErrors.record_noise);
+    // Light that is the same all over, as of a sky, has no noise; it is wrong where it is hidden.
+    if (!here.has_record_light) errors.bias_at_8 *= kLeast;
+}
+
 void Pace::choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan) {
-    found_.needy_pixels = here.needy_pixels;
-    found_.records_at_8 = here.records_at_16 * found_.record_growth;
+    found_.needy_pixels = here.needy_pixels / needy_density_;
+    found_.records_at_8 = here.records_at_16 * found_.record_growth / record_density_;
     if (!found_.records) {
         found_.records = kUsualErrors;
-        const double share = here.needy_pixels / found_.pixels;
+        const double share = found_.needy_pixels / found_.pixels;
         found_.records->edge_noise *= std::max(share / kUsualNeedy, 1.0);
     }
-    if (here.record_noise > 0) found_.records->record_noise = here.record_noise;
+    take_records(here);
     rates_.first_sample_s = 0;  // they are done
     rates_.record_path_s = here.path_s * per_work_s();
     rates_.edge_sample_s = here.sample_s * per_work_s();
@@ -89,7 +117,8 @@ void Pace::choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan) 
     records.pixels = records.needy_pixels = 0;
     const double records_s = surface_records_cost(records, rates_, plan);
     const double all_s = surface_records_cost(found_, rates_, plan);
-    records_until_s_ = watch_.seconds() + std::max(left_s(), 0.0) * records_s / all_s;
+    records_from_s_ = watch_.seconds();
+    records_until_s_ = records_from_s_ + std::max(left_s(), 0.0) * records_s / all_s;
 }
 
 void Pace::choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan) {
@@ -103,7 +132,8 @@ void Pace::choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan) {
                                                 plan.refined_record_paths / plan.record_paths
                                           : std::exp2(plan.levels - level.level + 1) - 2;
     const double all_s = static_cast<double>(level.records) * (1 + finer) * path_s;
-    const double paths = (records_until_s_ - watch_.seconds()) / all_s - kRecordStart;
+    const double until_s = records_from_s_ + record_density_ * (records_until_s_ - records_from_s_);
+    const double paths = (until_s - watch_.seconds()) / all_s - kRecordStart;
     int& chosen = level.level == 0 ? plan.record_paths : plan.refined_record_paths;
     const int planned = chosen;
     chosen = whole_packets(std::clamp(paths, planned / 4.0, planned * 4.0));
@@ -116,8 +146,10 @@ void Pace::choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan) {
 void Pace::choose_edges(const std::function<double(int)>& cost, double unit_s,
                         SurfaceRecordsPlan& plan) {
     const double per_unit_s = unit_s * per_work_s();
-    const double left = left_s() - found_.pixels * kResolve_s;
-    const double grace = std::max(kGraceShare * until_s_, kGrace_s);
+    // Records that the rest has fewer of do not take as long there.
+    until_s_ += (watch_.seconds() - records_from_s_) * (1 - 1 / record_density_);
+    const double left = needy_density_ * (left_s() - found_.pixels * kResolve_s);
+    const double grace = needy_density_ * std::max(kGraceShare * until_s_, kGrace_s);
     const auto most_in = [&](double seconds) {
         int low = 1, high = kMostEdgeSpp;
         while (high - low > 1 + low / 64) {

@@ -6,9 +6,11 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "core/timing.h"
 #include "filters/auto_plan.h"
+#include "filters/band_survey.h"
 #include "filters/records.h"
 
 namespace vecino {
@@ -29,8 +31,9 @@ struct PaceFindings {
     double needy_pixels = 0;
     double records_at_16 = 0;  ///< with cells of 16 pixels
     double record_noise = 0;   ///< as of RecordErrors
-    double path_s = 0;         ///< one path of a record, on one thread
-    double sample_s = 0;       ///< one further sample of a needy pixel, on one thread
+    bool has_record_light = true;
+    double path_s = 0;    ///< one path of a record, on one thread
+    double sample_s = 0;  ///< one further sample of a needy pixel, on one thread
 };
 
 class Pace {
@@ -42,9 +45,12 @@ class Pace {
     /// What a paced frame begins with; all of it but refine_tau may change.
     static SurfaceRecordsPlan first_plan() { return {1, 16, 16, 0, 64, 64, 1.0, 0.15}; }
 
-    /// The clock starts. Only so much of the frame is done now; the rest takes as much of the time
-    /// as its share.
-    void begin(double share_of_frame);
+    /// The clock starts.
+    void begin() { watch_ = {}; }
+
+    /// Where there are several bands: the plan is chosen in the first, by what the survey says of
+    /// the others. That with most needy pixels takes its place.
+    void choose_first(std::vector<BandRows>& bands, const std::vector<BandSurvey>& surveys);
 
     /// What the machine makes of its threads: a stage of so much work, by a trial, took so long.
     void take_stage(double work_s, double seconds);
@@ -61,6 +67,7 @@ class Pace {
                       SurfaceRecordsPlan& plan);
 
   private:
+    void take_records(const PaceFindings& here);
     /// Of the frame, for a second of one thread's work.
     [[nodiscard]] double per_work_s() const { return slowness_ / threads_; }
     [[nodiscard]] double left_s() const { return until_s_ - watch_.seconds(); }
@@ -73,6 +80,9 @@ class Pace {
     CostRates rates_{};
     double until_s_;
     double records_until_s_ = 0;
+    double records_from_s_ = 0;
+    // Of the first band: its share of these, held against its share of the time.
+    double needy_density_ = 1, record_density_ = 1;
 };
 
 }  // namespace vecino

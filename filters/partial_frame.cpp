@@ -61,6 +61,9 @@ PixelValues Blend::values(std::optional<glm::vec3> albedo) const {
     return values;
 }
 
+namespace {
+
+/// Of a source, from its distance; mean_distance is that of all sources.
 double source_weight(Weighting weighting, double distance, double mean_distance) {
     switch (weighting) {
         case Weighting::proportional:
@@ -72,6 +75,8 @@ double source_weight(Weighting weighting, double distance, double mean_distance)
     }
     return 0;
 }
+
+}  // namespace
 
 // ---------------------------------------------------------------- the frame
 
@@ -142,6 +147,18 @@ void PartialFrame::filter(std::size_t pixel, const Blend& blend) {
     values.emission = frame_.emission.values()[pixel];
     values.samples = static_cast<std::uint64_t>(frame_.sample_count.values()[pixel]);
     store(pixel, values);
+}
+
+Blend PartialFrame::blend(const std::vector<Source>& sources, Weighting weighting) const {
+    double mean_distance = 0;
+    for (const Source& source : sources)
+        mean_distance += source.distance / static_cast<double>(sources.size());
+    Blend blend;
+    for (const Source& source : sources) {
+        blend.add(frame_, source.pixel, guide_->hit(source.pixel),
+                  source_weight(weighting, source.distance, mean_distance));
+    }
+    return blend;
 }
 
 void PartialFrame::for_each(const PixelList& pixels,

@@ -42,8 +42,11 @@ inline double share(std::size_t part, std::size_t whole) {
     return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// The weight of a source from its distance, for Weighting; mean_distance is that of all sources.
-double source_weight(Weighting weighting, double distance, double mean_distance);
+/// A pixel that another takes light from, and how far apart their hits are, in any unit.
+struct Source {
+    std::uint32_t pixel;
+    double distance;
+};
 
 class PartialFrame {
   public:
@@ -84,6 +87,9 @@ class PartialFrame {
     void store(std::size_t pixel, const Blend& blend);
     /// Gives a traced pixel the light of a blend, for its own albedo; what it shines itself stays.
     void filter(std::size_t pixel, const Blend& blend);
+
+    /// Of sources, weighted by their distances.
+    [[nodiscard]] Blend blend(const std::vector<Source>& sources, Weighting weighting) const;
 
     /// Runs body for all pixels of a list, or of the frame, in parallel.
     void for_each(const PixelList& pixels, const std::function<void(std::size_t)>& body) const;

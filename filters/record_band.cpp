@@ -108,7 +108,7 @@ class Band {
 
     void find_needs_of_rows() {
         if (plan_.edge_spp > 0) {
-            needy_ = find_needs(tracer_, clusters_, rows_);
+            needy_ = find_needs(tracer_, clusters_, rows_, plan_.pilot_spp);
         } else {
             needy_.resize(exceptions_.size());
         }
@@ -196,9 +196,11 @@ class Band {
         PaceFindings findings;
         findings.needy_pixels = needy_pixels();
         if (has_records(tracer_.task)) {
+            findings.has_record_light = false;
             findings.path_s = quickest([this, &findings](int number) {
                 const RecordTrial made = try_records({tracer_, clusters_}, number);
                 findings.records_at_16 = made.records_at_16;
+                findings.has_record_light |= made.has_light;
                 findings.record_noise =
                     kFitNoise * made.noise * std::pow(made.paths / 512.0, kRecordSlope);
                 return made.path_s;

@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "filters/pace.h"
-#include "filters/pixel_clusters.h"
 #include "filters/surface_records_stages.h"
 
 namespace vecino {
@@ -18,11 +17,6 @@ struct BandContext {
     PixelClusters& clusters;           ///< with room for the rows
     Pace* pace;                        ///< null: the plan stands
     std::function<void()> checkpoint;  ///< between stages; throws to interrupt
-};
-
-struct BandRows {
-    RowRange made;
-    RowRange sampled;  ///< those, and around them what their records are fitted to
 };
 
 /// Fills in the rows of the frame, and adds up times and counts. A pace changes the plan.

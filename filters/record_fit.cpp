@@ -78,6 +78,16 @@ bool solve(NormalEquations& e, std::size_t n, std::size_t channels) {
     return true;
 }
 
+/// A record right beside something else says little of what is farther off than that (Ward's
+/// harmonic mean distance): one of a few such in a cell would darken all of it.
+double trust(const Record& record, float distance2_world, float footprint_world) {
+    constexpr float kHarmonicMeans = 2, kOwn = 0.35f;  // of a cell: it speaks for that much itself
+    const float own = kOwn * footprint_world;
+    const float off2 = (distance2_world + own * own) * record.nearness * record.nearness *
+                       (1 / (kHarmonicMeans * kHarmonicMeans));
+    return 1.0 / (1.0 + static_cast<double>(off2 * off2));
+}
+
 class RecordFitter {
   public:
     RecordFitter(const RecordMap& map, const SurfaceRecordsPlan& plan)
@@ -129,10 +139,11 @@ class RecordFitter {
         const float aligned = eighth_power(glm::dot(other.normal_world, record.normal_world));
         const double dx = static_cast<double>(other.x - record.x) / scale.cell;
         const double dy = static_cast<double>(other.y - record.y) / scale.cell;
-        const double weight = scale.weight * static_cast<double>(aligned) *
-                              std::exp(-(dx * dx + dy * dy) * per_sigma2_);
-        if (!(weight > 1e-6)) return;
         const glm::vec3 off = other.position_world - record.position_world;
+        const double weight = scale.weight * static_cast<double>(aligned) *
+                              std::exp(-(dx * dx + dy * dy) * per_sigma2_) *
+                              trust(other, glm::dot(off, off), record.footprint_world);
+        if (!(weight > 1e-6)) return;
         const Terms terms = terms_of(static_cast<double>(glm::dot(off, record.u_axis)),
                                      static_cast<double>(glm::dot(off, record.v_axis)));
         for (std::size_t i = 0; i < kFitTerms; ++i) {

@@ -266,6 +266,12 @@ RecordWork gather_records(const RecordInputs& inputs, const SurfaceRecordsPlan& 
     }
 }
 
+std::size_t count_records(const RecordInputs& inputs, int cell) {
+    RecordLevel level(cell, inputs.clusters.width(), inputs.clusters.rows());
+    std::ranges::fill(level.active, std::uint8_t{1});
+    return place_records(inputs.clusters, level, inputs.tracer.threads).size();
+}
+
 RecordTrial try_records(const RecordInputs& inputs, int number) {
     constexpr std::size_t kCells = 64, kRun = 8, kApart = 5;  // neighbours, as records are made in
     constexpr int kPaths = 32;
@@ -286,9 +292,13 @@ RecordTrial try_records(const RecordInputs& inputs, int number) {
     const double seconds = watch.seconds();
     const auto records = std::max(static_cast<double>(candidates.size()), 1.0);
     double noise = 0;
-    for (const Record& record : level.records) noise += shown_noise(inputs, record);
+    bool has_light = false;
+    for (const Record& record : level.records) {
+        noise += shown_noise(inputs, record);
+        has_light |= std::ranges::any_of(record.light, [](float light) { return light > 0; });
+    }
     return {static_cast<double>(candidates.size()) * one_of,
-            seconds / (records * (kPaths + kRecordStart)), noise / records, kPaths};
+            seconds / (records * (kPaths + kRecordStart)), noise / records, kPaths, has_light};
 }
 
 }  // namespace vecino

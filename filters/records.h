@@ -104,12 +104,16 @@ using CountRecords = std::function<void(const RecordCount&)>;
 RecordWork gather_records(const RecordInputs& inputs, const SurfaceRecordsPlan& plan,
                           const CountRecords& count);
 
+/// How many records there would be, of cells of one size.
+std::size_t count_records(const RecordInputs& inputs, int cell);
+
 /// Records of a few cells, to see how long they take.
 struct RecordTrial {
     double records_at_16;  ///< of all cells, were their sides 16 pixels; extrapolated
     double path_s;         ///< of one thread, by paths + kRecordStart
     double noise;          ///< mean square in sRGB of what their light adds to pixels
     int paths;             ///< of each
+    bool has_light;        ///< whether some of it reaches them
 };
 RecordTrial try_records(const RecordInputs& inputs, int number);
 

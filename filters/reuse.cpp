@@ -31,11 +31,6 @@ class Reuse {
     }
 
   private:
-    struct Near {
-        std::uint32_t pixel;
-        double distance;  ///< in footprints
-    };
-
     /// Visits those of a lattice that are not of the next coarser one.
     void pass(int h, bool is_first) {
         const Extent size = partial_.size();
@@ -59,12 +54,12 @@ class Reuse {
                static_cast<std::uint32_t>(x);
     }
 
-    /// Traced pixels whose hits are in reach, of the same surface.
-    [[nodiscard]] std::vector<Near> near(std::size_t pixel) const {
+    /// Traced pixels whose hits are in reach, of the same surface; distances in footprints.
+    [[nodiscard]] std::vector<Source> near(std::size_t pixel) const {
         const Extent size = partial_.size();
         const auto [x, y] = pixel_at(pixel, size);
         const auto radius = static_cast<double>(parameters_.radius);
-        std::vector<Near> found;
+        std::vector<Source> found;
         for (int v = std::max(y - reach_, 0); v <= std::min(y + reach_, size.height - 1); ++v) {
             for (int u = std::max(x - reach_, 0); u <= std::min(x + reach_, size.width - 1); ++u) {
                 const std::uint32_t other = number(u, v);
@@ -78,29 +73,17 @@ class Reuse {
     }
 
     void take_colour(std::size_t pixel) {
-        const std::vector<Near> found = near(pixel);
+        const std::vector<Source> found = near(pixel);
         Blend blend;
-        if (parameters_.reused == Reused::mean) blend = mean_of(found);
+        if (parameters_.reused == Reused::mean)
+            blend = partial_.blend(found, parameters_.weighting);
         // Hits at one place have no weights by distance.
         if (!(blend.weight() > 0) || !std::isfinite(blend.weight())) {
-            const auto nearest = std::ranges::min_element(found, {}, &Near::distance);
+            const auto nearest = std::ranges::min_element(found, {}, &Source::distance);
             blend = Blend();
             blend.add(partial_.frame(), nearest->pixel, partial_.guide().hit(nearest->pixel), 1.0);
         }
         partial_.store(pixel, blend);
-    }
-
-    [[nodiscard]] Blend mean_of(const std::vector<Near>& found) const {
-        double mean_distance = 0;
-        for (const Near& each : found)
-            mean_distance += each.distance / static_cast<double>(found.size());
-        Blend blend;
-        for (const Near& each : found) {
-            const double weight =
-                source_weight(parameters_.weighting, each.distance, mean_distance);
-            blend.add(partial_.frame(), each.pixel, partial_.guide().hit(each.pixel), weight);
-        }
-        return blend;
     }
 
     const MethodParameters& parameters_;

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/render_task.h"
 #include "core/timing.h"
+#include "filters/band_survey.h"
 #include "filters/pace.h"
 #include "filters/pixel_clusters.h"
 #include "filters/record_band.h"
@@ -70,6 +71,16 @@ int band_rows(Extent size, int cell) {
     return (rows + unit - 1) / unit * unit;
 }
 
+std::vector<BandRows> bands_of(Extent size, int rows, int margin) {
+    std::vector<BandRows> bands;
+    for (int top = 0; top < size.height; top += rows) {
+        const RowRange made{top, std::min(top + rows, size.height)};
+        bands.push_back(
+            {made, {std::max(top - margin, 0), std::min(made.end + margin, size.height)}});
+    }
+    return bands;
+}
+
 }  // namespace
 
 StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings,
@@ -99,19 +110,22 @@ StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings
     statistics.scene_s = scene_watch.seconds();
     const Stopwatch trace_watch;
     int steps = 0;
-    const int all_steps = 5 * ((size.height + rows - 1) / rows);
+    std::vector<BandRows> bands = bands_of(size, rows, margin);
+    out.counts.bands = static_cast<int>(bands.size());
+    const int all_steps = 5 * out.counts.bands;
     const auto checkpoint = [&] {
         ++steps;
         if (progress && !progress(static_cast<double>(steps) / all_steps))
             throw Error(ExitCode::interrupted, "interrupted");
     };
-    for (int top = 0; top < size.height; top += rows) {
-        ++out.counts.bands;
-        const RowRange made{top, std::min(top + rows, size.height)};
-        const RowRange sampled{std::max(top - margin, 0), std::min(made.end + margin, size.height)};
-        Pace* const pace = top == 0 ? run.pace : nullptr;
-        if (pace != nullptr) pace->begin(static_cast<double>(made.end) / size.height);
-        make_band({tracer, kernel, settings, clusters, pace, checkpoint}, {made, sampled}, out);
+    Pace* pace = run.pace;
+    if (pace != nullptr) {
+        pace->begin();
+        if (bands.size() > 1) pace->choose_first(bands, survey_bands(tracer, bands, clusters));
+    }
+    for (const BandRows& band : bands) {
+        make_band({tracer, kernel, settings, clusters, pace, checkpoint}, band, out);
+        pace = nullptr;  // the first band has chosen for all
     }
     statistics.trace_s = trace_watch.seconds();
     return out;

@@ -3,6 +3,9 @@
 // The stages of the method surface_records, for those who want to know what each takes.
 #pragma once
 
+#include <vector>
+
+#include "filters/pixel_clusters.h"
 #include "filters/surface_records.h"
 
 namespace vecino {
@@ -30,6 +33,12 @@ struct StageCounts {
     std::uint64_t records = 0;
     int bands = 0;
     int band_rows = 0;
+};
+
+/// Large frames are made in bands of rows.
+struct BandRows {
+    RowRange made;
+    RowRange sampled;  ///< those, and around them what their records are fitted to
 };
 
 struct StagedRender {

@@ -78,7 +78,7 @@ inline Baseline baseline_of(const GateRun& run) {
 
 /// The only failure.
 inline Verdict failure_of(const GateResult& result) {
-    if (result.count(Outcome::fail) != 1) throw std::logic_error("not one failure");
+    if (result.count(GateOutcome::fail) != 1) throw std::logic_error("not one failure");
     return result.verdicts.front();
 }
 

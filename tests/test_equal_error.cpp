@@ -66,8 +66,8 @@ TEST_CASE("rivals are told apart by what varies among them, and keep to their sc
     add_paths(groups, {{"sampler", "independent"}});
     add_paths(groups, {{"sampler", "sobol"}});
     groups.push_back(budget(0.02, 1.0 / 32));
-    groups.push_back(finished("auto", {{"time_budget", 0.02}, {"scene", "scenes/other.json"}},
-                              1.0 / 32, 0.02));
+    groups.push_back(
+        finished("auto", {{"time_budget", 0.02}, {"scene", "scenes/other.json"}}, 1.0 / 32, 0.02));
     const EqualErrorTable table = equal_error(groups);
     CHECK(table.rivals == std::vector<std::string>{"path, independent", "path, sobol"});
     REQUIRE(table.rows.size() == 2);

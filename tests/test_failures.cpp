@@ -193,9 +193,9 @@ TEST_CASE("a small part of the catalogue holds its verdicts", "[failure]") {
         CHECK(table.find("0 of them otherwise than expected") != std::string::npos);
     }
     SECTION("the gate passes, and says which comparison it was") {
-        const Outcome check = run_in(small.dir, "check run");
-        CHECK(check.code == 0);
-        CHECK(check.out.find("PASS") != std::string::npos);
+        const Outcome gate = run_in(small.dir, "check run");
+        CHECK(gate.code == 0);
+        CHECK(gate.out.find("PASS") != std::string::npos);
     }
 }
 

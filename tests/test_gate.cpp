@@ -26,7 +26,7 @@ TEST_CASE("a mean may be worse by the tolerance and by what noise explains, and 
           "[gate]") {
     const GateClass gate = class_judging("psnr_float_db", 0.1);
     const Verdict same = judged(group_of(kThen), group_of(kThen), gate);
-    CHECK(same.outcome == Outcome::pass);
+    CHECK(same.outcome == GateOutcome::pass);
     const double allowed_db = same.margin_db.value();  // the loss is 0
     // 5 and 5 seeds with a deviation of 0.0791 dB; t of 8 degrees at three sigma is 4.277.
     const double noise_db = 4.277 * 0.0791 * std::sqrt(2.0 / 5);
@@ -36,12 +36,12 @@ TEST_CASE("a mean may be worse by the tolerance and by what noise explains, and 
         judged(group_of(shifted(kThen, -allowed_db + 0.001)), group_of(kThen), gate);
     const Verdict above =
         judged(group_of(shifted(kThen, -allowed_db - 0.001)), group_of(kThen), gate);
-    CHECK(below.outcome == Outcome::pass);
-    CHECK(above.outcome == Outcome::fail);
+    CHECK(below.outcome == GateOutcome::pass);
+    CHECK(above.outcome == GateOutcome::fail);
     CHECK(above.margin_db.value() == Approx(-0.001).margin(1e-4));
     CHECK(above.limit.value() == Approx(above.baseline.value() - allowed_db).epsilon(1e-5));
     CHECK(above.value.value() < above.limit.value());
-    CHECK(judged(group_of(shifted(kThen, 5)), group_of(kThen), gate).outcome == Outcome::pass);
+    CHECK(judged(group_of(shifted(kThen, 5)), group_of(kThen), gate).outcome == GateOutcome::pass);
 }
 
 TEST_CASE("decibels mean the same for every metric", "[gate]") {
@@ -49,17 +49,17 @@ TEST_CASE("decibels mean the same for every metric", "[gate]") {
                                         "p99_error", "worst_tile_psnr_db", "edge.p99_error");
     CAPTURE(metric);
     const GateClass gate = class_judging(metric, 0.2, 0);  // k_sigma of 0: no noise
-    CHECK(judged(group_of({29.81}), group_of({30.0}), gate).outcome == Outcome::pass);
+    CHECK(judged(group_of({29.81}), group_of({30.0}), gate).outcome == GateOutcome::pass);
     const Verdict worse = judged(group_of({29.79}), group_of({30.0}), gate);
-    CHECK(worse.outcome == Outcome::fail);
+    CHECK(worse.outcome == GateOutcome::fail);
     CHECK(worse.margin_db.value() == Approx(-0.01).margin(1e-4));
 }
 
 TEST_CASE("ssim counts as the error 1 - ssim", "[gate]") {
     const GateClass gate = class_judging("ssim", 0.2, 0);
     // 1 - ssim goes with the amplitude here: 0.41 dB of psnr are 0.205 dB.
-    CHECK(judged(group_of({29.61}), group_of({30.0}), gate).outcome == Outcome::pass);
-    CHECK(judged(group_of({29.59}), group_of({30.0}), gate).outcome == Outcome::fail);
+    CHECK(judged(group_of({29.61}), group_of({30.0}), gate).outcome == GateOutcome::pass);
+    CHECK(judged(group_of({29.59}), group_of({30.0}), gate).outcome == GateOutcome::fail);
 }
 
 TEST_CASE("scatter does not excuse a run of which most seeds are bad", "[gate]") {
@@ -70,9 +70,9 @@ TEST_CASE("scatter does not excuse a run of which most seeds are bad", "[gate]")
     };
     // The mean alone would pass it: it is worse, but how much nobody knows.
     const std::vector<Verdict> wild = judge({29.0, 26.0, 32.0, 28.9});
-    CHECK(verdict_of(wild, "mean").outcome == Outcome::pass);
+    CHECK(verdict_of(wild, "mean").outcome == GateOutcome::pass);
     const Verdict most = verdict_of(wild, "seeds");
-    CHECK(most.outcome == Outcome::fail);
+    CHECK(most.outcome == GateOutcome::fail);
     CHECK(most.value.value() == Approx(29.0));  // 28.9 and 26 are worse still
     CHECK(most.value.value() < most.limit.value());
     // t of 7 degrees at three sigma is 4.53.
@@ -80,8 +80,8 @@ TEST_CASE("scatter does not excuse a run of which most seeds are bad", "[gate]")
     CHECK(most.margin_db.value() == Approx(0.1 + noise_db - 1.0).margin(0.02));
 
     // An outlier is no majority, nor is a half; and a mean that fails needs no second verdict.
-    CHECK(verdict_of(judge({30.0, 30.1, 29.9, 26.0}), "seeds").outcome == Outcome::pass);
-    CHECK(verdict_of(judge({30.0, 30.1, 28.0, 28.0}), "seeds").outcome == Outcome::pass);
+    CHECK(verdict_of(judge({30.0, 30.1, 29.9, 26.0}), "seeds").outcome == GateOutcome::pass);
+    CHECK(verdict_of(judge({30.0, 30.1, 28.0, 28.0}), "seeds").outcome == GateOutcome::pass);
     CHECK(judge({29.0, 29.1, 28.9, 29.05}).size() == 1);
 }
 
@@ -106,9 +106,9 @@ TEST_CASE("identical images pass against identical ones and fail nothing", "[gat
     RunGroup perfect = group_of({30.0, 30.0});
     for (auto& row : perfect.rows) row["metrics"]["psnr_float_db"] = nullptr;
     const GateClass gate = class_judging("psnr_float_db", 0.1);
-    CHECK(judged(perfect, perfect, gate).outcome == Outcome::pass);
-    CHECK(judged(perfect, group_of({30.0, 30.0}), gate).outcome == Outcome::pass);
-    CHECK(judged(group_of({30.0, 30.0}), perfect, gate).outcome == Outcome::fail);
+    CHECK(judged(perfect, perfect, gate).outcome == GateOutcome::pass);
+    CHECK(judged(perfect, group_of({30.0, 30.0}), gate).outcome == GateOutcome::pass);
+    CHECK(judged(group_of({30.0, 30.0}), perfect, gate).outcome == GateOutcome::fail);
 }
 
 TEST_CASE("a metric that one side lacks fails, one that both lack is not gated", "[gate]") {
@@ -116,12 +116,12 @@ TEST_CASE("a metric that one side lacks fails, one that both lack is not gated",
     const RunGroup whole = group_of(kThen);
     RunGroup without = whole;
     for (auto& row : without.rows) row["metrics"].erase("regions");
-    CHECK(judged(without, whole, gate, "not measured").outcome == Outcome::fail);
-    CHECK(judged(whole, without, gate, "no baseline").outcome == Outcome::fail);
-    CHECK(judged(without, without, gate, "not measured").outcome == Outcome::not_gated);
+    CHECK(judged(without, whole, gate, "not measured").outcome == GateOutcome::fail);
+    CHECK(judged(whole, without, gate, "no baseline").outcome == GateOutcome::fail);
+    CHECK(judged(without, without, gate, "not measured").outcome == GateOutcome::not_gated);
     RunGroup one_lacks = whole;
     one_lacks.rows.back()["metrics"].erase("regions");
-    CHECK(judged(one_lacks, whole, gate, "not measured").outcome == Outcome::fail);
+    CHECK(judged(one_lacks, whole, gate, "not measured").outcome == GateOutcome::fail);
 }
 
 TEST_CASE("an unchanged run passes, and its numbers are counted as identical", "[gate]") {
@@ -129,7 +129,7 @@ TEST_CASE("an unchanged run passes, and its numbers are counted as identical", "
     const GateResult result = check_run(run, baseline_of(run));
     CHECK(result.passed());
     CHECK(result.identical == 2);
-    CHECK(result.count(Outcome::pass) == 2 * 4 * 2);  // four metrics, mean and seeds
+    CHECK(result.count(GateOutcome::pass) == 2 * 4 * 2);  // four metrics, mean and seeds
 }
 
 TEST_CASE("a cell that is missing, failed, stale or not finite fails", "[gate]") {
@@ -172,14 +172,14 @@ TEST_CASE("samples that a budget measured are not gated where they differ", "[ga
     GateRun run = run_of({group_of(kThen)});
     run.groups.front().question["budget"] = "equal_time";
     const Baseline baseline = baseline_of(run);
-    CHECK(check_run(run, baseline).count(Outcome::pass) > 0);
+    CHECK(check_run(run, baseline).count(GateOutcome::pass) > 0);
     run.groups.front().question["spp"] = 17;
     const GateResult result = check_run(run, baseline);
-    CHECK(result.count(Outcome::fail) == 0);
-    CHECK(result.count(Outcome::pass) == 0);
+    CHECK(result.count(GateOutcome::fail) == 0);
+    CHECK(result.count(GateOutcome::pass) == 0);
     CHECK_FALSE(result.passed());  // nothing was judged
     CHECK(gate_headline(result).starts_with("FAIL: nothing to judge"));
-    CHECK(verdict_of(result.verdicts, "measured budget").outcome == Outcome::not_gated);
+    CHECK(verdict_of(result.verdicts, "measured budget").outcome == GateOutcome::not_gated);
 }
 
 TEST_CASE("the worst stands first: facts, then failures by margin, then passes", "[gate]") {
@@ -196,8 +196,8 @@ TEST_CASE("the worst stands first: facts, then failures by margin, then passes",
         return a.margin_db.value() < b.margin_db.value();
     };
     CHECK(std::is_sorted(result.verdicts.begin() + 1, result.verdicts.begin() + 9, by_margin));
-    CHECK(result.count(Outcome::fail) == 9);
-    CHECK(result.verdicts[9].outcome == Outcome::pass);
+    CHECK(result.count(GateOutcome::fail) == 9);
+    CHECK(result.verdicts[9].outcome == GateOutcome::pass);
 }
 
 TEST_CASE("a baseline of another matrix is refused", "[gate]") {

@@ -39,7 +39,7 @@ double failing_share(const GateClass& gate, double loss_db, int trials) {
         const RunGroup then = group_of(drawn(kBaselineSeeds, 0.15, generator));
         std::vector<double> now = drawn(kCheckSeeds, 0.15, generator);
         for (double& value : now) value -= loss_db;
-        failed += judged(group_of(now), then, gate).outcome == Outcome::fail ? 1 : 0;
+        failed += judged(group_of(now), then, gate).outcome == GateOutcome::fail ? 1 : 0;
     }
     return static_cast<double>(failed) / trials;
 }
@@ -144,7 +144,7 @@ struct Tally {
         bool alarm = false;
         for (const Verdict& verdict : verdicts) {
             ++comparisons;
-            if (verdict.outcome != Outcome::fail) continue;
+            if (verdict.outcome != GateOutcome::fail) continue;
             alarm = true;
             ++by_rule[verdict.rule + " " + verdict.metric];
         }

@@ -34,22 +34,23 @@ const std::vector<double> kThen = {1.00, 1.02, 0.98, 1.01};
 
 TEST_CASE("time fails where the interval of the ratio lies beyond the tolerance", "[gate]") {
     const GateClass gate = gating_time(0.1);
-    CHECK(judged_time(timed(kThen), timed(kThen), gate).outcome == Outcome::pass);
+    CHECK(judged_time(timed(kThen), timed(kThen), gate).outcome == GateOutcome::pass);
     const Verdict slow = judged_time(timed({1.30, 1.33, 1.28, 1.31}), timed(kThen), gate);
-    CHECK(slow.outcome == Outcome::fail);
+    CHECK(slow.outcome == GateOutcome::fail);
     CHECK(slow.margin_db.value() < 0);
     CHECK(slow.limit.value() == Approx(1.1 * slow.baseline.value()));
     // As slow on average, but nobody knows.
-    CHECK(judged_time(timed({0.9, 1.9, 1.0, 1.7}), timed(kThen), gate).outcome == Outcome::pass);
+    CHECK(judged_time(timed({0.9, 1.9, 1.0, 1.7}), timed(kThen), gate).outcome ==
+          GateOutcome::pass);
     CHECK(judged_time(timed({1.05, 1.07, 1.03, 1.06}), timed(kThen), gate).outcome ==
-          Outcome::pass);
+          GateOutcome::pass);
 }
 
 TEST_CASE("time is compared but not gated where that would not be fair", "[gate]") {
     const RunGroup slow = timed({2.0, 2.0, 2.0, 2.0});
     const GateClass gate = gating_time(0.1);
     const auto not_gated = [](const Verdict& verdict, const std::string& why) {
-        CHECK(verdict.outcome == Outcome::not_gated);
+        CHECK(verdict.outcome == GateOutcome::not_gated);
         CHECK(verdict.text.find(why) != std::string::npos);
         CHECK(verdict.value.value() == Approx(2.0));
     };

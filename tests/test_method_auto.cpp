@@ -133,18 +133,23 @@ TEST_CASE("of methods that are equal within half a decibel, path is taken", "[au
     CHECK_FALSE(choose_schedule(found, rates, 1).takes_path);
 }
 
+/// That what auto says it did gives the same bits. Returns its facts.
+nlohmann::json check_schedule(const MethodRequest& request) {
+    const MethodRender made = render(find_method("auto"), request);
+    const Method* method = nullptr;
+    const MethodRequest again = scheduled(made.facts["schedule"], request, method);
+    REQUIRE(method != nullptr);
+    CHECK(render(*method, again).render.frame.radiance == made.render.frame.radiance);
+    return made.facts;
+}
+
 TEST_CASE("a schedule gives the bits that auto gave", "[auto]") {
     for (const char* name : {"cornell_sphere", "near_lamp"}) {
         INFO(name);
         const Scene scene = load_scene(kScenes + name + ".json");
         for (const int spp : {4, 64, 2048}) {
             INFO(spp);
-            const MethodRequest request = request_of(scene, spp);
-            const MethodRender made = render(find_method("auto"), request);
-            const Method* method = nullptr;
-            const MethodRequest again = scheduled(made.facts["schedule"], request, method);
-            REQUIRE(method != nullptr);
-            CHECK(render(*method, again).render.frame.radiance == made.render.frame.radiance);
+            check_schedule(request_of(scene, spp));
         }
     }
 }
@@ -215,21 +220,45 @@ TEST_CASE("a paced frame has the bits of the plan that it ended with", "[auto]")
             INFO(name << ", " << seconds);
             MethodRequest request = request_of(scene, 1);
             request.parameters.planner.time_budget_s = seconds;
-            const MethodRender made = render(find_method("auto"), request);
-            const Method* method = nullptr;
-            const MethodRequest again = scheduled(made.facts["schedule"], request, method);
-            REQUIRE(method != nullptr);
-            CHECK(render(*method, again).render.frame.radiance == made.render.frame.radiance);
+            check_schedule(request);
         }
     }
 }
 
+TEST_CASE("a paced frame of several bands has the bits of its plan", "[auto]") {
+    const Scene scene = load_scene(kScenes + "open.json");
+    MethodRequest request = request_of(scene, 1);
+    request.settings.size = {8200, 330};
+    request.parameters.planner.time_budget_s = 0.5;
+    CHECK(check_schedule(request)["chosen"] == "surface_records");
+}
+
+TEST_CASE("a pace begins where there is most to do, and knows that it is not so everywhere",
+          "[auto]") {
+    const std::vector<BandRows> bands{{{0, 256}, {0, 256}}, {{256, 512}, {256, 512}}};
+    const auto edges_of_second = [&](double first_needy) {
+        std::vector<BandRows> order = bands;
+        Pace pace(1, 2, usual_findings());
+        pace.begin();
+        pace.choose_first(order, {{131072, first_needy, 500, 1e-3}, {131072, 8000, 500, 1e-3}});
+        CHECK(order.front().made.begin == 256);
+        SurfaceRecordsPlan plan = Pace::first_plan();
+        pace.choose_structure({8000, 500, 8e-7, true, 6e-8, 4e-8}, plan);
+        pace.choose_edges([](int edge_spp) { return 8000.0 * edge_spp; }, 4e-8, plan);
+        return plan.edge_spp;
+    };
+    // Half of the time, and all of what there is to do in it, or half of that.
+    const double ratio = double{1} * edges_of_second(0) / edges_of_second(7999);
+    CHECK(ratio > 1.9);
+    CHECK(ratio < 2.1);
+}
+
 TEST_CASE("a pace gives to records and samples what the time allows", "[auto]") {
     const PilotFindings found = usual_findings();
-    const PaceFindings here{14000, 1150, 8e-7, 6e-8, 4e-8};
+    const PaceFindings here{14000, 1150, 8e-7, true, 6e-8, 4e-8};
     const auto edges_in = [&](double seconds, int threads) {
         Pace pace(seconds, threads, found);
-        pace.begin(1);
+        pace.begin();
         SurfaceRecordsPlan plan = Pace::first_plan();
         pace.choose_pilot(4e-8, plan);
         pace.choose_structure(here, plan);
@@ -252,11 +281,11 @@ TEST_CASE("a machine that is busy is given less to do", "[auto]") {
     const PilotFindings found = usual_findings();
     const auto paths_on = [&](double slowness) {
         Pace pace(1, 2, found);
-        pace.begin(1);
+        pace.begin();
         SurfaceRecordsPlan plan = Pace::first_plan();
         pace.choose_pilot(4e-8, plan);
         pace.take_stage(0.2, 0.1 * slowness);
-        pace.choose_structure({14000, 1150, 8e-7, 6e-8, 4e-8}, plan);
+        pace.choose_structure({14000, 1150, 8e-7, true, 6e-8, 4e-8}, plan);
         pace.choose_paths({0, 4300, 3e-8 * slowness}, plan);
         return plan.cell * plan.cell < 32 ? 4.0 * plan.record_paths : plan.record_paths;
     };

@@ -185,7 +185,7 @@ TEST_CASE("a claim's opposite has the opposite outcomes", "[report_reproduction]
     CHECK(better.missing == 0);
     CHECK(better.holds == worse.fails);
     CHECK(better.fails == worse.holds);
-    CHECK(claims[2][0].verdict == Verdict::not_testable);
+    CHECK(claims[2][0].verdict == ClaimVerdict::not_testable);
 }
 
 TEST_CASE("the command beside a number or a claim makes the cells that it speaks of",

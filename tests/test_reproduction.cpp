@@ -35,7 +35,7 @@ Groups one_scene(const std::vector<double>& mean_errors) {
     return groups;
 }
 
-Outcome only_outcome(const Json& test, const Groups& groups) {
+PairOutcome only_outcome(const Json& test, const Groups& groups) {
     const ClaimResult result = judge(claim_json(test), groups);
     REQUIRE(result.pairs.size() == 1);
     return result.pairs[0].outcome;
@@ -60,18 +60,18 @@ TEST_CASE("a claim is reproduced if every pair holds, a trend if most do, and no
           "[reproduction]") {
     struct Case {
         std::size_t holds, unsure, fails;
-        Verdict verdict;
+        ClaimVerdict verdict;
     };
-    const Case c = GENERATE(values<Case>({{4, 0, 0, Verdict::reproduced},
-                                          {3, 1, 0, Verdict::trend},
-                                          {3, 0, 1, Verdict::trend},
-                                          {2, 1, 0, Verdict::trend},
-                                          {2, 2, 0, Verdict::not_reproduced},
-                                          {2, 0, 2, Verdict::not_reproduced},
-                                          {2, 1, 1, Verdict::not_reproduced},
-                                          {1, 0, 2, Verdict::not_reproduced},
-                                          {0, 4, 0, Verdict::not_reproduced},
-                                          {0, 0, 4, Verdict::not_reproduced}}));
+    const Case c = GENERATE(values<Case>({{4, 0, 0, ClaimVerdict::reproduced},
+                                          {3, 1, 0, ClaimVerdict::trend},
+                                          {3, 0, 1, ClaimVerdict::trend},
+                                          {2, 1, 0, ClaimVerdict::trend},
+                                          {2, 2, 0, ClaimVerdict::not_reproduced},
+                                          {2, 0, 2, ClaimVerdict::not_reproduced},
+                                          {2, 1, 1, ClaimVerdict::not_reproduced},
+                                          {1, 0, 2, ClaimVerdict::not_reproduced},
+                                          {0, 4, 0, ClaimVerdict::not_reproduced},
+                                          {0, 0, 4, ClaimVerdict::not_reproduced}}));
     Groups groups;
     for (std::size_t i = 0; i < c.holds; ++i)
         add_scene(groups, "a" + std::to_string(i), errors_db(-2));
@@ -93,22 +93,22 @@ TEST_CASE("a difference has to lie beyond the margin, in the direction of the re
     struct Case {
         const char* relation;
         double margin, difference_db;
-        Outcome outcome;
+        PairOutcome outcome;
     };
-    const Case c = GENERATE(values<Case>({{"higher", 0, 0.01, Outcome::holds},
-                                          {"higher", 0, -0.01, Outcome::fails},
-                                          {"higher", 1, 1.01, Outcome::holds},
-                                          {"higher", 1, 0.99, Outcome::fails},
-                                          {"higher", 1, -1.01, Outcome::fails},
-                                          {"lower", 0, -0.01, Outcome::holds},
-                                          {"lower", 0, 0.01, Outcome::fails},
-                                          {"lower", 1, -1.01, Outcome::holds},
-                                          {"lower", 1, -0.99, Outcome::fails},
-                                          {"lower", 1, 1.01, Outcome::fails},
-                                          {"same", 1, 0.99, Outcome::holds},
-                                          {"same", 1, -0.99, Outcome::holds},
-                                          {"same", 1, 1.01, Outcome::fails},
-                                          {"same", 1, -1.01, Outcome::fails}}));
+    const Case c = GENERATE(values<Case>({{"higher", 0, 0.01, PairOutcome::holds},
+                                          {"higher", 0, -0.01, PairOutcome::fails},
+                                          {"higher", 1, 1.01, PairOutcome::holds},
+                                          {"higher", 1, 0.99, PairOutcome::fails},
+                                          {"higher", 1, -1.01, PairOutcome::fails},
+                                          {"lower", 0, -0.01, PairOutcome::holds},
+                                          {"lower", 0, 0.01, PairOutcome::fails},
+                                          {"lower", 1, -1.01, PairOutcome::holds},
+                                          {"lower", 1, -0.99, PairOutcome::fails},
+                                          {"lower", 1, 1.01, PairOutcome::fails},
+                                          {"same", 1, 0.99, PairOutcome::holds},
+                                          {"same", 1, -0.99, PairOutcome::holds},
+                                          {"same", 1, 1.01, PairOutcome::fails},
+                                          {"same", 1, -1.01, PairOutcome::fails}}));
     CAPTURE(c.relation, c.margin, c.difference_db);
     // A lower error is a higher quality.
     const Groups groups = one_scene(errors_db(-c.difference_db));
@@ -128,25 +128,25 @@ TEST_CASE("an interval that reaches over the margin leaves a pair open", "[repro
     struct Case {
         const char* relation;
         double margin, difference_db;
-        Outcome outcome;
+        PairOutcome outcome;
     };
-    const Case c = GENERATE(values<Case>({{"higher", 0, 3.1, Outcome::open},
-                                          {"higher", 0, 3.3, Outcome::holds},
-                                          {"higher", 0, -3.1, Outcome::open},
-                                          {"higher", 0, -3.3, Outcome::fails},
-                                          {"higher", 2, 5.1, Outcome::open},
-                                          {"higher", 2, 5.3, Outcome::holds},
-                                          {"lower", 2, -5.1, Outcome::open},
-                                          {"lower", 2, -5.3, Outcome::holds},
-                                          {"lower", 2, 1.1, Outcome::open},
-                                          {"lower", 2, 1.3, Outcome::fails},
-                                          {"same", 4, 0.7, Outcome::holds},
-                                          {"same", 4, -0.7, Outcome::holds},
-                                          {"same", 4, 0.9, Outcome::open},
-                                          {"same", 4, -0.9, Outcome::open},
-                                          {"same", 4, 7.1, Outcome::open},
-                                          {"same", 4, 7.3, Outcome::fails},
-                                          {"same", 4, -7.3, Outcome::fails}}));
+    const Case c = GENERATE(values<Case>({{"higher", 0, 3.1, PairOutcome::open},
+                                          {"higher", 0, 3.3, PairOutcome::holds},
+                                          {"higher", 0, -3.1, PairOutcome::open},
+                                          {"higher", 0, -3.3, PairOutcome::fails},
+                                          {"higher", 2, 5.1, PairOutcome::open},
+                                          {"higher", 2, 5.3, PairOutcome::holds},
+                                          {"lower", 2, -5.1, PairOutcome::open},
+                                          {"lower", 2, -5.3, PairOutcome::holds},
+                                          {"lower", 2, 1.1, PairOutcome::open},
+                                          {"lower", 2, 1.3, PairOutcome::fails},
+                                          {"same", 4, 0.7, PairOutcome::holds},
+                                          {"same", 4, -0.7, PairOutcome::holds},
+                                          {"same", 4, 0.9, PairOutcome::open},
+                                          {"same", 4, -0.9, PairOutcome::open},
+                                          {"same", 4, 7.1, PairOutcome::open},
+                                          {"same", 4, 7.3, PairOutcome::fails},
+                                          {"same", 4, -7.3, PairOutcome::fails}}));
     CAPTURE(c.relation, c.margin, c.difference_db);
     const Groups groups = one_scene(unsure_errors_db(-c.difference_db));
     CHECK(only_outcome(better_than_path(c.relation, c.margin), groups) == c.outcome);
@@ -154,13 +154,13 @@ TEST_CASE("an interval that reaches over the margin leaves a pair open", "[repro
 
 TEST_CASE("results that are equal are neither higher nor lower", "[reproduction]") {
     const std::string relation = GENERATE(values<std::string>({"higher", "lower"}));
-    CHECK(only_outcome(better_than_path(relation), one_scene(errors_db(0))) == Outcome::open);
+    CHECK(only_outcome(better_than_path(relation), one_scene(errors_db(0))) == PairOutcome::open);
 }
 
 TEST_CASE("one pair without a value makes a claim untestable", "[reproduction]") {
     Groups groups = one_scene(errors_db(-2));
     add_scene(groups, "hall", errors_db(-2));
-    REQUIRE(judge(claim_json(better_than_path()), groups).verdict == Verdict::reproduced);
+    REQUIRE(judge(claim_json(better_than_path()), groups).verdict == ClaimVerdict::reproduced);
     GroupSummary& mean = groups.back();
     SECTION("its group has failed cells, and no statistics") {
         mean.statistics.reset();
@@ -179,25 +179,25 @@ TEST_CASE("one pair without a value makes a claim untestable", "[reproduction]")
         mean.statistics->whole = statistics_of({0, 0, 0, 0});
     }
     const ClaimResult result = judge(claim_json(better_than_path()), groups);
-    CHECK(result.verdict == Verdict::not_testable);
+    CHECK(result.verdict == ClaimVerdict::not_testable);
     CHECK(result.holds == 1);
     CHECK(result.missing == 1);
-    CHECK(result.pairs[1].outcome == Outcome::missing);
+    CHECK(result.pairs[1].outcome == PairOutcome::missing);
 }
 
 TEST_CASE("noise of fewer than 3 seeds is missing, their quality is not", "[reproduction]") {
     Groups groups{group_of("path", Json::object(), {1e-3, 2e-3}),
                   group_of("mean", Json::object(), {1e-4, 2e-4})};
     for (GroupSummary& group : groups) group.statistics->whole.noise_by_seed.clear();
-    CHECK(only_outcome(better_than_path(), groups) == Outcome::holds);
+    CHECK(only_outcome(better_than_path(), groups) == PairOutcome::holds);
     Json noise = better_than_path("lower");
     noise["quantity"] = "noise";
-    CHECK(only_outcome(noise, groups) == Outcome::missing);
+    CHECK(only_outcome(noise, groups) == PairOutcome::missing);
 }
 
 TEST_CASE("a claim without results is not testable", "[reproduction]") {
-    CHECK(judge(claim_json(better_than_path()), {}).verdict == Verdict::not_testable);
-    CHECK(judge(claim_json(better_than_path(), true), {}).verdict == Verdict::not_testable);
+    CHECK(judge(claim_json(better_than_path()), {}).verdict == ClaimVerdict::not_testable);
+    CHECK(judge(claim_json(better_than_path(), true), {}).verdict == ClaimVerdict::not_testable);
 }
 
 TEST_CASE("every test of a claim needs results, unless any one is enough", "[reproduction]") {
@@ -206,10 +206,10 @@ TEST_CASE("every test of a claim needs results, unless any one is enough", "[rep
     const Json tests = {better_than_path(), other};
     const Groups groups = one_scene(errors_db(-2));
     const ClaimResult all = judge(claim_json(tests), groups);
-    CHECK(all.verdict == Verdict::not_testable);
+    CHECK(all.verdict == ClaimVerdict::not_testable);
     CHECK(all.holds == 1);
     CHECK(all.missing == 1);
-    CHECK(judge(claim_json(tests, true), groups).verdict == Verdict::reproduced);
+    CHECK(judge(claim_json(tests, true), groups).verdict == ClaimVerdict::reproduced);
 }
 
 TEST_CASE("where any pair is enough, scenes are counted by the best of theirs", "[reproduction]") {
@@ -226,14 +226,14 @@ TEST_CASE("where any pair is enough, scenes are counted by the best of theirs", 
     groups.back().statistics.reset();
     const Json claim = claim_json(better_than_path(), true);
     const ClaimResult both = judge(claim, groups);
-    CHECK(both.verdict == Verdict::reproduced);
+    CHECK(both.verdict == ClaimVerdict::reproduced);
     CHECK(both.holds == 2);
     CHECK(both.missing == 0);
     CHECK(both.pairs.size() == 4);
 
     groups[4] = scheme("b.json", 3, errors_db(1));
     const ClaimResult half = judge(claim, groups);
-    CHECK(half.verdict == Verdict::not_reproduced);
+    CHECK(half.verdict == ClaimVerdict::not_reproduced);
     CHECK(half.holds == 1);
     CHECK(half.fails == 1);
 
@@ -243,7 +243,7 @@ TEST_CASE("where any pair is enough, scenes are counted by the best of theirs", 
     // What was not measured may have held.
     groups.push_back(scheme("b.json", 5, {}));
     groups.back().statistics.reset();
-    CHECK(judge(claim, groups).verdict == Verdict::not_testable);
+    CHECK(judge(claim, groups).verdict == ClaimVerdict::not_testable);
 }
 
 TEST_CASE("a ratio in decibels has the interval that was worked out by hand", "[reproduction]") {

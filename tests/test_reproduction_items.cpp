@@ -62,13 +62,13 @@ bool has(const std::string& text, const std::string& part) {
 TEST_CASE("a share is reproduced if its interval lies within the points", "[reproduction]") {
     struct Case {
         double percent;
-        Verdict verdict;
+        ClaimVerdict verdict;
     };
-    const Case c = GENERATE(values<Case>({{20, Verdict::reproduced},
-                                          {24.9, Verdict::reproduced},
-                                          {25.1, Verdict::not_reproduced},
-                                          {15.1, Verdict::reproduced},
-                                          {14.9, Verdict::not_reproduced}}));
+    const Case c = GENERATE(values<Case>({{20, ClaimVerdict::reproduced},
+                                          {24.9, ClaimVerdict::reproduced},
+                                          {25.1, ClaimVerdict::not_reproduced},
+                                          {15.1, ClaimVerdict::reproduced},
+                                          {14.9, ClaimVerdict::not_reproduced}}));
     CAPTURE(c.percent);
     const ItemResult result = result_of(share_item(20, 5), steady_share(c.percent));
     CHECK(result.verdict == c.verdict);
@@ -83,23 +83,23 @@ TEST_CASE("a share whose interval crosses an end of the points is a trend", "[re
     // Over -1, 1, -1, 1 of the mean, the interval is 3.182 * sqrt(4 / 3) / 2 = 1.837 to each side.
     struct Case {
         double percent;
-        Verdict verdict;
+        ClaimVerdict verdict;
     };
-    const Case c = GENERATE(values<Case>({{23.1, Verdict::reproduced},
-                                          {23.2, Verdict::trend},
-                                          {26.8, Verdict::trend},
-                                          {26.9, Verdict::not_reproduced},
-                                          {16.9, Verdict::reproduced},
-                                          {16.8, Verdict::trend},
-                                          {13.2, Verdict::trend},
-                                          {13.1, Verdict::not_reproduced}}));
+    const Case c = GENERATE(values<Case>({{23.1, ClaimVerdict::reproduced},
+                                          {23.2, ClaimVerdict::trend},
+                                          {26.8, ClaimVerdict::trend},
+                                          {26.9, ClaimVerdict::not_reproduced},
+                                          {16.9, ClaimVerdict::reproduced},
+                                          {16.8, ClaimVerdict::trend},
+                                          {13.2, ClaimVerdict::trend},
+                                          {13.1, ClaimVerdict::not_reproduced}}));
     CAPTURE(c.percent);
     const auto groups = shares({c.percent - 1, c.percent + 1, c.percent - 1, c.percent + 1});
     CHECK(result_of(share_item(20, 5), groups).verdict == c.verdict);
 }
 
 TEST_CASE("an interval wider than the points on both sides is a trend", "[reproduction]") {
-    CHECK(result_of(share_item(20, 5), shares({10, 30, 10, 30})).verdict == Verdict::trend);
+    CHECK(result_of(share_item(20, 5), shares({10, 30, 10, 30})).verdict == ClaimVerdict::trend);
 }
 
 TEST_CASE("a share is that of the slowest in the time of the slowest path tracing",
@@ -137,7 +137,7 @@ TEST_CASE("a share is one of path tracing that was rendered alike", "[reproducti
 TEST_CASE("a share has no verdict without seeds to tell by, or without path tracing",
           "[reproduction]") {
     const ItemResult one = result_of(share_item(20, 5), shares({20}));
-    CHECK(one.verdict == Verdict::not_testable);
+    CHECK(one.verdict == ClaimVerdict::not_testable);
     CHECK(one.ours->mean == Approx(20));
     CHECK(one.remark == "one seed has no interval");
 
@@ -145,7 +145,7 @@ TEST_CASE("a share has no verdict without seeds to tell by, or without path trac
     groups[0].seeds_done.pop_back();
     groups[0].times_s.pop_back();
     const ItemResult other_seeds = result_of(share_item(20, 5), groups);
-    CHECK(other_seeds.verdict == Verdict::not_testable);
+    CHECK(other_seeds.verdict == ClaimVerdict::not_testable);
     CHECK(other_seeds.remark == "no path tracing of the same seeds");
     CHECK_FALSE(other_seeds.ours);
 
@@ -154,7 +154,7 @@ TEST_CASE("a share has no verdict without seeds to tell by, or without path trac
     const ItemResult none = result_of(share_item(20, 5), {});
     CHECK(none.remark == "no result");
     CHECK(none.slowest.empty());
-    CHECK(none.verdict == Verdict::not_testable);
+    CHECK(none.verdict == ClaimVerdict::not_testable);
 }
 
 TEST_CASE("a group without a finished cell is no result", "[reproduction]") {
@@ -169,7 +169,7 @@ TEST_CASE("times are those of another machine, and shown at the published parame
     const Json at = {{"times_at", {{"spp", 100}, {"light_sampling", "none"}}}};
     const Groups groups{timed_group("path", Json::object(), {60, 180})};
     const ItemResult minutes = result_of(time_item("min"), groups, at);
-    CHECK(minutes.verdict == Verdict::not_testable);
+    CHECK(minutes.verdict == ClaimVerdict::not_testable);
     CHECK(minutes.ours->mean == Approx(2));
     CHECK(minutes.ratio == Approx(1));
     CHECK(minutes.remark == "times of another machine");
@@ -179,7 +179,7 @@ TEST_CASE("times are those of another machine, and shown at the published parame
     const ItemResult other = result_of(time_item("min"), groups, elsewhere);
     CHECK_FALSE(other.ours);
     CHECK(other.ratio == 0);
-    CHECK(other.verdict == Verdict::not_testable);
+    CHECK(other.verdict == ClaimVerdict::not_testable);
     CHECK(other.remark == "not run at the published size and samples");
 }
 
@@ -193,7 +193,7 @@ TEST_CASE("a time of more samples is extrapolated, beside one of equal noise", "
     groups[0].statistics->whole.noise = 0.01;
     const ItemResult alone = result_of(item, groups, parts);
     CHECK(alone.ours->mean == Approx(0.4));  // 36 s for 100 spp
-    CHECK(alone.verdict == Verdict::not_testable);
+    CHECK(alone.verdict == ClaimVerdict::not_testable);
     CHECK(alone.remark ==
           "extrapolated from the measured rate; no other path tracing to compare with");
 

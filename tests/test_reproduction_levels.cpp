@@ -65,7 +65,7 @@ ItemResult share(const std::vector<double>& published_s, const std::vector<doubl
 TEST_CASE("seeds of fewer samples decide a claim, with the published ones beside",
           "[reproduction]") {
     const ClaimResult result = judged(better(), groups_with({5e-4}));
-    CHECK(result.verdict == Verdict::reproduced);
+    CHECK(result.verdict == ClaimVerdict::reproduced);
     REQUIRE(result.pairs.size() == 1);
     const PairResult& pair = result.pairs[0];
     CHECK(pair.of.find("10") != std::string::npos);
@@ -78,7 +78,7 @@ TEST_CASE("published samples that say the opposite leave a comparison open", "[r
     const ClaimResult higher = judged(better(), groups_with({2e-3}));
     CHECK(higher.open == 1);
     CHECK(higher.holds + higher.fails + higher.missing == 0);
-    CHECK(higher.verdict == Verdict::not_reproduced);
+    CHECK(higher.verdict == ClaimVerdict::not_reproduced);
     const ClaimResult lower = judged(better("lower"), groups_with({2e-3}));
     CHECK(lower.open == 1);
     CHECK(lower.fails == 0);
@@ -93,7 +93,7 @@ TEST_CASE("one published seed alone decides nothing", "[reproduction]") {
     Groups groups = groups_with({5e-4});
     groups.resize(2);
     const ClaimResult result = judged(better(), groups);
-    CHECK(result.verdict == Verdict::not_testable);
+    CHECK(result.verdict == ClaimVerdict::not_testable);
     CHECK(result.missing == 1);
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("without published results the seeds decide alone", "[reproduction]") 
     Groups groups = groups_with({5e-4});
     groups.erase(groups.begin() + 1);
     const ClaimResult result = judged(better(), groups);
-    CHECK(result.verdict == Verdict::reproduced);
+    CHECK(result.verdict == ClaimVerdict::reproduced);
     CHECK_FALSE(result.pairs.at(0).published_db);
 }
 
@@ -114,23 +114,23 @@ TEST_CASE("one seed has no noise to be held against", "[reproduction]") {
                                    {"is", "lower"},
                                    {"than", {{"method", "path"}}}});
     const ClaimResult result = judged(claim, groups);
-    CHECK(result.verdict == Verdict::reproduced);
+    CHECK(result.verdict == ClaimVerdict::reproduced);
     CHECK_FALSE(result.pairs.at(0).published_db);
 }
 
 TEST_CASE("a share needs the interval of its seeds and the published samples within its points",
           "[reproduction]") {
     const ItemResult good = share({26}, {2.4, 2.5, 2.6, 2.5});
-    CHECK(good.verdict == Verdict::reproduced);
+    CHECK(good.verdict == ClaimVerdict::reproduced);
     CHECK(good.ours.value().mean == Approx(26));
     CHECK_FALSE(good.ours->low);
     CHECK(good.tested.value().mean == Approx(25));
     CHECK(good.tested->low);
-    CHECK(share({40}, {2.4, 2.5, 2.6, 2.5}).verdict == Verdict::trend);
-    CHECK(share({26}, {6.4, 6.5, 6.6, 6.5}).verdict == Verdict::trend);
-    CHECK(share({40}, {6.4, 6.5, 6.6, 6.5}).verdict == Verdict::not_reproduced);
+    CHECK(share({40}, {2.4, 2.5, 2.6, 2.5}).verdict == ClaimVerdict::trend);
+    CHECK(share({26}, {6.4, 6.5, 6.6, 6.5}).verdict == ClaimVerdict::trend);
+    CHECK(share({40}, {6.4, 6.5, 6.6, 6.5}).verdict == ClaimVerdict::not_reproduced);
     const ItemResult single = share({26}, {2.5});
-    CHECK(single.verdict == Verdict::not_testable);
+    CHECK(single.verdict == ClaimVerdict::not_testable);
     CHECK_FALSE(single.remark.empty());
 }
 

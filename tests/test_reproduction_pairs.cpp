@@ -183,11 +183,11 @@ TEST_CASE("every variant gets a result of its own", "[reproduction]") {
     REQUIRE(results.size() == 4);
     CHECK(results[0].variant == "chance");
     CHECK(results[0].region.empty());
-    CHECK(results[0].verdict == Verdict::reproduced);
+    CHECK(results[0].verdict == ClaimVerdict::reproduced);
     CHECK(results[1].variant == "chance");
     CHECK(results[1].region == "interior");
     CHECK(results[2].variant == "nee");
-    CHECK(results[2].verdict == Verdict::not_reproduced);
+    CHECK(results[2].verdict == ClaimVerdict::not_reproduced);
     CHECK(results[2].fails == 1);
 }
 
@@ -208,7 +208,7 @@ TEST_CASE("regions are those of each side of a test", "[reproduction]") {
     test["regions"] = {"interior", "edge"};
     CHECK(difference() == Approx(1 + 4));
     test["regions"] = {"emitter", "emitter"};  // has no pixels here
-    CHECK(judge(claim_json(test), {mean, path}).verdict == Verdict::not_testable);
+    CHECK(judge(claim_json(test), {mean, path}).verdict == ClaimVerdict::not_testable);
 }
 
 TEST_CASE("the interior is told apart where a test is of the whole image, and only there",

@@ -7,7 +7,6 @@ Spheres are meshes of 256 x 128 faces. Blender writes the time of rendering alon
 "cycles.ViewLayer.render_time". --planes emission adds the light that is seen directly, as a multilayer file; --planes guide writes that and
 the first hits through the pixel centres, of one sample: what `vecino upsample --guide` reads.
 """
-import argparse
 import json
 import math
 import pathlib
@@ -15,9 +14,7 @@ import pathlib
 import bpy
 from mathutils import Matrix, Vector
 
-
-def size(text):
-    return tuple(int(side) for side in text.split("x"))
+from arguments import render_arguments
 
 
 def material_of(name, properties):
@@ -122,15 +119,7 @@ def set_up(scene, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene")
-    parser.add_argument("output")
-    parser.add_argument("--size", type=size, required=True)
-    parser.add_argument("--spp", type=int, required=True)
-    parser.add_argument("--max-depth", type=int, required=True)
-    parser.add_argument("--seed", type=int, required=True)
-    parser.add_argument("--planes", choices=["none", "emission", "guide"], default="none")
-    arguments = parser.parse_args()
+    arguments = render_arguments(__doc__)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = json.loads(pathlib.Path(arguments.scene).read_text())
     add_objects(scene)

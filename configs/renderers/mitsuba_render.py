@@ -7,7 +7,6 @@ filter. The attribute "seconds" of the image tells the time of rendering alone: 
 kernel, which a render of another seed does first. --planes emission adds the light that is seen directly, --planes guide writes that and
 the first hits through the pixel centres, and no other light: what `vecino upsample --guide` reads.
 """
-import argparse
 import json
 import pathlib
 import tempfile
@@ -16,9 +15,7 @@ import time
 import mitsuba as mi
 import numpy as np
 
-
-def size(text):
-    return tuple(int(side) for side in text.split("x"))
+from arguments import render_arguments
 
 
 def mesh(name, positions, faces):
@@ -78,15 +75,7 @@ def load(scene, arguments, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene")
-    parser.add_argument("output")
-    parser.add_argument("--size", type=size, required=True)
-    parser.add_argument("--spp", type=int, required=True)
-    parser.add_argument("--max-depth", type=int, required=True)
-    parser.add_argument("--seed", type=int, required=True)
-    parser.add_argument("--planes", choices=["none", "emission", "guide"], default="none")
-    arguments = parser.parse_args()
+    arguments = render_arguments(__doc__)
     if arguments.planes == "guide":
         arguments.spp = 1
     mi.set_variant("llvm_ad_rgb")

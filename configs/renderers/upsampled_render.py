@@ -14,9 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-
-def size(text):
-    return tuple(int(side) for side in text.split("x"))
+from arguments import size
 
 
 def header(data):
