@@ -48,33 +48,39 @@ Terms terms_of(double u, double v) {
     return {1.0, u, v, u * u, u * v, v * v};
 }
 
-/// Solves the first n equations by Cholesky's method, all right sides at once; false if they are
-/// not definite.
-bool solve(NormalEquations& e, std::size_t n, std::size_t channels) {
-    auto& m = e.matrix;
+/// Cholesky's lower triangle in place of the first n rows; false if they are not definite.
+bool factor(std::array<Terms, kFitTerms>& m, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = 0; j <= i; ++j) {
             double sum = m[i][j];
             for (std::size_t k = 0; k < j; ++k) sum -= m[i][k] * m[j][k];
-            if (i == j) {
-                if (!(sum > 0)) return false;
-                m[i][i] = std::sqrt(sum);
-            } else {
+            if (i > j) {
                 m[i][j] = sum / m[j][j];
+                continue;
             }
+            if (!(sum > 0)) return false;
+            m[i][i] = std::sqrt(sum);
         }
     }
-    for (std::size_t c = 0; c < channels; ++c) {
-        Terms& x = e.right[c];
-        for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t k = 0; k < i; ++k) x[i] -= m[i][k] * x[k];
-            x[i] /= m[i][i];
-        }
-        for (std::size_t i = n; i-- > 0;) {
-            for (std::size_t k = i + 1; k < n; ++k) x[i] -= m[k][i] * x[k];
-            x[i] /= m[i][i];
-        }
+    return true;
+}
+
+/// By that triangle, in place of a right side.
+void substitute(const std::array<Terms, kFitTerms>& m, std::size_t n, Terms& x) {
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t k = 0; k < i; ++k) x[i] -= m[i][k] * x[k];
+        x[i] /= m[i][i];
     }
+    for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t k = i + 1; k < n; ++k) x[i] -= m[k][i] * x[k];
+        x[i] /= m[i][i];
+    }
+}
+
+/// Solves the first n equations, all right sides at once; false if they are not definite.
+bool solve(NormalEquations& e, std::size_t n, std::size_t channels) {
+    if (!factor(e.matrix, n)) return false;
+    for (std::size_t c = 0; c < channels; ++c) substitute(e.matrix, n, e.right[c]);
     return true;
 }
 

@@ -126,8 +126,14 @@ TEST_CASE("all that a box can hold: lamps of every shape, mirrors, a background,
     const Render result = records(scene, settings);
     const Image reference = paths(scene, settings, 1024);
     CHECK(db(result.frame.radiance, reference) > c.least_db);
-    CHECK(glm::length(mean_of(result.frame.radiance) - mean_of(reference)) <
-          5e-3 * glm::length(mean_of(reference)));
+    // A mirror's paths are noisy: the mean of one image is up to a percent off.
+    glm::dvec3 mean(0);
+    constexpr std::uint32_t kSeeds = 4;
+    for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+        settings.seed = seed;
+        mean += mean_of(records(scene, settings).frame.radiance) / double{kSeeds};
+    }
+    CHECK(glm::length(mean - mean_of(reference)) < 5e-3 * glm::length(mean_of(reference)));
 }
 
 TEST_CASE("the error of surface records goes on falling as their plan grows", "[surface_records]") {
