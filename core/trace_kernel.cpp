@@ -185,11 +185,8 @@ class PathPacket {
         const Ray ray = bounce_ray(random_.pair(2));
         active_ = active & (dot(ray.direction, surface_.normal) > 0.0f);
         if (!any(active_)) return Float{};
-        if (task_.max_depth < 2) {
-            if (task_.has_background) add(block.direct, at, find_background(tracer, ray));
-            return Float{};
-        }
-        add(block.direct, at, follow(tracer, ray));
+        if (task_.max_depth < 2 && !task_.has_background) return Float{};
+        add(block.direct, at, follow(tracer, ray));  // what hides a background, too, is near or not
         const Float nearness = select(active_, 1.0f / surface_.distance, Float{});
         for (int bounce = 2; bounce <= task_.max_depth; ++bounce) {
             active_ &= (throughput_.x + throughput_.y + throughput_.z) > 0.0f;

@@ -14,33 +14,13 @@
 #include "filters/surface_records_stages.h"
 #include "tests/catch.h"
 #include "tests/error_of.h"
+#include "tests/record_renders.h"
 #include "tests/scene_text.h"
 
 using namespace vecino;
 using namespace vecino::test;
 
 namespace {
-
-constexpr SurfaceRecordsPlan kSmallPlan{4, 64, 4, 1, 256, 128, 0.85, 0.15};
-
-Render records(const Scene& scene, const RenderSettings& settings,
-               const SurfaceRecordsPlan& plan = kSmallPlan) {
-    return render_surface_records(scene, settings, plan);
-}
-
-double db(const Image& test, const Image& reference) {
-    const Comparison comparison = compare(test, reference);
-    REQUIRE(comparison.metrics.has_value());
-    return comparison.metrics->psnr_float_db.value_or(200.0);
-}
-
-/// Paths of another seed.
-Image paths(const Scene& scene, RenderSettings settings, int spp) {
-    settings.spp = spp;
-    settings.seed = 77;
-    settings.planes = {Plane::radiance};
-    return render(scene, settings).frame.radiance;
-}
 
 /// A box with a lamp, with more or other things in it.
 Scene box_with(const std::string& materials, const std::string& objects,
