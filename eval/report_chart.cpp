@@ -183,12 +183,12 @@ void draw_curves(Grid<glm::u8vec3>& picture, std::vector<Point> points, const Ax
         }
         last[point.curve] = &point;
     }
+    // Below the last point and beyond it: what is slower and better than all others is not there.
     for (const auto& [name, point] : last) {
         const cv::Point at = place(*point);
-        draw_text(
-            picture, point->label,
-            {at.x - text_width(point->label, text_style(kSoftInk)) - 8 * kScale, at.y - 6 * kScale},
-            text_style(kSoftInk));
+        const int most_x = corner.x + kPlotWidth - text_width(point->label, text_style(kSoftInk));
+        draw_text(picture, point->label, {std::min(at.x + 7 * kScale, most_x), at.y + 14 * kScale},
+                  text_style(kSoftInk));
     }
 }
 
