@@ -4,7 +4,6 @@
 // pass, the channel), Mitsuba 3.9 (a name of the user's choice, then R G B, X Y Z, T or I; those of
 // its manual and of its types are known), pbrt-v4 (today's names and those of its first releases).
 #include "core/renderer_channels.h"
-#include "core/files.h"
 
 #include <algorithm>
 #include <cctype>
