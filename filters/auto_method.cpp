@@ -32,6 +32,7 @@ void give_plan(const SurfaceRecordsPlan& plan, SurfaceRecordsOptions& options) {
     options.fit_sigma = plan.fit_sigma;
     options.refine_tau = plan.refine_tau;
     options.fit_order = plan.fit_order;
+    options.edge_light = plan.edge_light;
 }
 
 /// What ran: the request itself, with a method and numbers of its own.
@@ -45,8 +46,10 @@ std::string schedule_text(const Chosen& run) {
     std::string text = "--method " + std::string(run.method.name);
     if (run.method.options.empty()) text += " --spp " + std::to_string(run.request.settings.spp);
     for (const MethodOption& row : method_options()) {
-        if (run.method.reads(row.name))
-            text += " " + std::string(row.flag) + " " + row.get(run.request.parameters).dump();
+        if (!run.method.reads(row.name)) continue;
+        const Json value = row.get(run.request.parameters);
+        text += " " + std::string(row.flag) + " " +
+                (value.is_string() ? value.get<std::string>() : value.dump());
     }
     return text;
 }
@@ -104,7 +107,8 @@ MethodRender run_records(const MethodRequest& request, Decision& decision, Pace*
     const SurfaceRecordsPlan plan = pace != nullptr ? Pace::first_plan() : schedule.plan;
     StagedRender staged = render_in_stages(request.scene, request.settings, {plan, pace}, progress);
     schedule.plan = staged.plan;
-    schedule.predicted_error = surface_records_error(decision.pilot.found, staged.plan);
+    schedule.predicted_error =
+        staged.expected_error.value_or(surface_records_error(decision.pilot.found, staged.plan));
     Chosen run{find_method("surface_records"), request};
     give_plan(staged.plan, run.request.parameters.surface_records);
     MethodRender out = method_render(std::move(staged));

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/color.h"
 #include "core/timing.h"
+#include "filters/noisy_errors.h"
 #include "filters/surface_records_stages.h"
 
 namespace vecino {
@@ -17,63 +17,6 @@ constexpr int kFewSpp = 4, kManySpp = 16;  ///< for a packet of 16 lanes all the
 
 // Offsets of the seed: no pilot frame shares its points with another or with the final frame.
 constexpr std::uint32_t kSeedA = 0x5bd1e995u, kSeedB = 0x27d4eb2fu;
-
-// ---------------------------------------------------------------- errors of images
-
-/// A mean over pixels and how far it may be off.
-struct MeanError {
-    double mean = 0;
-    double standard_error = 0;
-};
-
-template <class Value>
-MeanError mean_over(const Image& image, const Value& value) {
-    double sum = 0, squares = 0;
-    const Extent size = image.size();
-    for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) {
-            const double each = value(x, y);
-            if (!std::isfinite(each)) continue;
-            sum += each;
-            squares += each * each;
-        }
-    }
-    const auto count = static_cast<double>(size.area());
-    const double mean = sum / count;
-    return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count)};
-}
-
-/// Mean squared difference of sRGB values.
-MeanError difference(const Image& a, const Image& b) {
-    return mean_over(a, [&](int x, int y) {
-        double sum = 0;
-        for (int c = 0; c < 3; ++c) {
-            const double d = static_cast<double>(srgb_encode(a(x, y)[c]) - srgb_encode(b(x, y)[c]));
-            sum += d * d;
-        }
-        return sum / 3;
-    });
-}
-
-/// Not at all where they are clipped.
-double clipped_slope(float linear) {
-    return linear > 1.0f ? 0.0 : static_cast<double>(srgb_slope(linear));
-}
-
-/// Mean squared error of an image against the truth that two independent, unbiased images are
-/// noisy forms of: the product of both differences has no noise in its mean.
-MeanError error_against(const Image& image, const Image& a, const Image& b) {
-    return mean_over(image, [&](int x, int y) {
-        double sum = 0;
-        for (int c = 0; c < 3; ++c) {
-            const double slope = clipped_slope(image(x, y)[c]);
-            const auto value = static_cast<double>(image(x, y)[c]);
-            sum += slope * slope * (value - static_cast<double>(a(x, y)[c])) *
-                   (value - static_cast<double>(b(x, y)[c]));
-        }
-        return sum / 3;
-    });
-}
 
 // ---------------------------------------------------------------- frames
 
@@ -158,7 +101,7 @@ class PilotRun {
         if (is_hurried()) {
             assume();
             // Where noise alone tells that there is hardly any: four frames, as long as the first.
-            if (4 * first.seconds <= kPilotShare * *budget_s_) measure_path();
+            if (4 * first.seconds <= share() * *budget_s_) measure_path();
         } else {
             look();
             compare();
@@ -178,10 +121,10 @@ class PilotRun {
         if (pilot_.found.has_records_method) measure_records(first);
     }
 
-    /// Of the first frames: they take some 600 ns a pixel, and where threads have little to do
-    /// their start is what counts.
+    /// Of the first frames: they take some 600 ns a pixel, ten times that where most are edges, and
+    /// where threads have little to do their start is what counts.
     [[nodiscard]] double look_pixels() const {
-        constexpr double kShare = 0.02, kPixel_s = 600e-9;
+        constexpr double kShare = 0.005, kPixel_s = 600e-9;
         return std::clamp(kShare * budget_s_.value_or(0) / kPixel_s, is_hurried() ? 2048.0 : 4096.0,
                           65536.0);
     }
@@ -205,11 +148,18 @@ class PilotRun {
         extrapolate_needy(first_needy_, kUsualNeedySlope);
     }
 
+    /// Of the budget. Where pixels are few, the smallest pilot may take more of it: a method that
+    /// does not suit the scene would cost more than that.
+    [[nodiscard]] double share() const {
+        constexpr double kAmple_s = 2e-6;  // of a pixel
+        constexpr double kMostShare = 0.16;
+        if (!budget_s_ || *budget_s_ < kAmple_s * pilot_.found.pixels) return kPilotShare;
+        return std::clamp(kLeastPilot_s / *budget_s_, kPilotShare, kMostShare);
+    }
+
     /// Whether even the smallest frames take more than the pilot's share, on a usual machine.
     [[nodiscard]] bool is_hurried() const {
-        constexpr double kLeastPilot_s = 0.03;
-        return budget_s_ && pilot_.found.has_records_method &&
-               kPilotShare * *budget_s_ < kLeastPilot_s;
+        return budget_s_ && pilot_.found.has_records_method && share() * *budget_s_ < kLeastPilot_s;
     }
 
     void assume() {
@@ -227,7 +177,7 @@ class PilotRun {
         const double budget_s =
             budget_s_ ? *budget_s_
                       : frames_.settings().spp * pilot_.found.pixels * pilot_.rates.path_sample_s;
-        const double left_s = kPilotShare * budget_s - (budget_s_ ? spent_s() : 0);
+        const double left_s = share() * budget_s - (budget_s_ ? spent_s() : 0);
         const double least = std::min(kLeastPixels, frames_.pixels(pilot_.reduction));
         for (int reduction = 1; frames_.pixels(reduction) >= least && reduction <= kMostReduction;
              ++reduction) {
@@ -260,8 +210,8 @@ class PilotRun {
         const PathFrame few_b = frames_.path(reduction, kFewSpp, kSeedB);
         path_a_ = frames_.path(reduction, kManySpp, kSeedA);
         path_b_ = frames_.path(reduction, kManySpp, kSeedB);
-        const double few = 0.5 * difference(few_a.radiance, few_b.radiance).mean;
-        const double many = 0.5 * difference(path_a_.radiance, path_b_.radiance).mean;
+        const double few = 0.5 * squared_difference(few_a.radiance, few_b.radiance).mean;
+        const double many = 0.5 * squared_difference(path_a_.radiance, path_b_.radiance).mean;
         PathErrors errors{many, 1};
         if (few > 0 && many > 0) {
             const double octaves = std::log2(double{kManySpp} / kFewSpp);
@@ -301,7 +251,7 @@ class PilotRun {
     /// former.
     void take_noise(const StagedRender& a, const StagedRender& b, const SurfaceRecordsPlan& plan,
                     RecordErrors& errors) {
-        noise_ = 0.5 * difference(a.render.frame.radiance, b.render.frame.radiance).mean;
+        noise_ = 0.5 * squared_difference(a.render.frame.radiance, b.render.frame.radiance).mean;
         const double needy = static_cast<double>(a.counts.needy_pixels);
         const double share = std::min(needy / frames_.pixels(pilot_.reduction), 1.0);
         errors.edge_noise = noise_ * share * share / edge_noise_share(plan);
@@ -311,7 +261,8 @@ class PilotRun {
     /// What halved cells change beyond noise is bias of the coarse ones.
     void take_bias(const StagedRender& coarse, const StagedRender& fine, int cell,
                    RecordErrors& errors) {
-        const MeanError both = difference(coarse.render.frame.radiance, fine.render.frame.radiance);
+        const MeanError both =
+            squared_difference(coarse.render.frame.radiance, fine.render.frame.radiance);
         const double beyond = both.mean - 2 * noise_;
         bias_ = std::max(beyond, 0.0);
         if (beyond < 3 * both.standard_error) return;  // it may be noise
@@ -324,7 +275,7 @@ class PilotRun {
         const MeanError found =
             error_against(a.render.frame.radiance, path_a_.radiance, path_b_.radiance);
         const double explained = noise_ + bias_;
-        if (found.mean - 2 * found.standard_error > 4 * explained)
+        if (found.mean - 2 * found.standard_error > 2 * explained)
             errors.unexplained = found.mean - explained;
     }
 
@@ -346,6 +297,7 @@ class PilotRun {
             static_cast<double>(made.counts.records) * std::pow(growth, std::log2(cell / 8.0));
     }
 
+    static constexpr double kLeastPilot_s = 0.03;
     static constexpr double kUsualRays = 3.4;         ///< of a path
     static constexpr double kUsualGrowth = 3.8;       ///< of records by halved cells
     static constexpr double kUsualNeedySlope = 1.15;  ///< needy pixels to the size of the frame

@@ -23,8 +23,8 @@ constexpr std::string_view kAdaptiveOptions[] = {"coarse_step", "tolerance", "co
 constexpr std::string_view kReuseOptions[] = {"radius", "reused", "weighting", "min_normal_cosine"};
 constexpr std::string_view kVariationOptions[] = {"variation_rule", "variation_bound", "min_spp"};
 constexpr std::string_view kSurfaceRecordsOptions[] = {
-    "pilot_spp", "edge_spp",   "cell",     "levels", "record_paths", "refined_record_paths",
-    "fit_sigma", "refine_tau", "fit_order"};
+    "pilot_spp", "edge_spp",   "cell",      "levels",    "record_paths", "refined_record_paths",
+    "fit_sigma", "refine_tau", "fit_order", "edge_light"};
 constexpr std::string_view kAutoOptions[] = {"time_budget"};
 
 // clang-format off

@@ -12,7 +12,7 @@
 namespace vecino {
 namespace {
 
-constexpr float kLeastSamples = 16.0f;  ///< of a pixel that gets any
+constexpr auto kLeastSamples = static_cast<float>(kLeastEdgeSpp);
 
 /// What is known of the light of a needy pixel.
 struct PixelEstimate {
@@ -70,8 +70,7 @@ class Estimator {
                                      int y) const {
         if (cluster.object < 0 || task_.max_depth < 1) return means.emission;
         RecordValue records;
-        record_light(inputs_.records, {x, y, cluster.object, means.position, means.normal},
-                     records);
+        rough_light(inputs_.records, {x, y, cluster.object, means.position, means.normal}, records);
         const glm::vec3 indirect(records[0] + records[3], records[1] + records[4],
                                  records[2] + records[5]);
         return means.emission + means.albedo * (direct_light(task_, cluster) + indirect);
@@ -165,47 +164,81 @@ class Spread {
     float picked_, picked_square_, picked_samples_;
 };
 
-using EstimateRows = std::vector<std::vector<PixelEstimate>>;
+using EstimateRow = std::vector<PixelEstimate>;
 using SpreadRows = std::vector<std::vector<float>>;
 
-EstimateRows estimate_all(const NeedInputs& inputs, RowRange rows, const NeedyRows& needy) {
-    EstimateRows estimates(needy.size());
-    for_each_block(needy.size(), 1, inputs.tracer.threads, [&](BlockRange block) {
-        const std::size_t r = block.begin;
-        const Estimator estimator(inputs);
-        estimates[r].reserve(needy[r].size());
-        for (const NeedyPixel& pixel : needy[r])
-            estimates[r].push_back(estimator.estimate(pixel.x, rows.begin + static_cast<int>(r)));
-    });
-    return estimates;
-}
+/// A row of needy pixels and what is known of them.
+struct KnownRow {
+    const std::vector<NeedyPixel>* needy = nullptr;  ///< null: there is no such row
+    EstimateRow estimates;
+    std::size_t first = 0;  ///< of those that are not yet left behind
+};
 
-/// Calls visit(index) for the pixels of a row within one column of x.
-template <class Visit>
-void visit_around(const std::vector<NeedyPixel>& row, int x, const Visit& visit) {
-    auto i = std::ranges::lower_bound(row, x - 1, {}, &NeedyPixel::x);
-    for (; i != row.end() && i->x <= x + 1; ++i) visit(static_cast<std::size_t>(i - row.begin()));
-}
+/// Goes down rows, with those above and below at hand: estimates of all rows would be more than
+/// caches hold.
+class SpreadFinder {
+  public:
+    /// needy: of rows. Begins at row number first of these.
+    SpreadFinder(const NeedInputs& inputs, RowRange rows, const NeedyRows& needy, std::size_t first)
+        : estimator_(inputs),
+          picks_(inputs.tracer.task.light_count > static_cast<std::uint32_t>(kMostExactLights)),
+          lights_(picks_ ? 0 : static_cast<int>(inputs.tracer.task.light_count)),
+          rows_(rows),
+          needy_(needy) {
+        if (first > 0) know(first - 1, known_[0]);
+        know(first, known_[1]);
+    }
 
-SpreadRows spread_all(const NeedInputs& inputs, const NeedyRows& needy,
-                      const EstimateRows& estimates) {
-    const TraceTask& task = inputs.tracer.task;
-    const bool picks = task.light_count > static_cast<std::uint32_t>(kMostExactLights);
-    const int lights = picks ? 0 : static_cast<int>(task.light_count);
-    SpreadRows spreads(needy.size());
-    for_each_block(needy.size(), 1, inputs.tracer.threads, [&](BlockRange block) {
-        const std::size_t r = block.begin;
-        spreads[r].reserve(needy[r].size());
-        for (std::size_t i = 0; i < needy[r].size(); ++i) {
-            const NeedyPixel& pixel = needy[r][i];
-            Spread spread(estimates[r][i], pixel.needs, lights, picks);
-            for (std::size_t n = r > 0 ? r - 1 : 0; n < std::min(r + 2, needy.size()); ++n) {
-                visit_around(needy[n], pixel.x, [&](std::size_t k) {
-                    if (n != r || k != i) spread.add_neighbour(estimates[n][k]);
-                });
-            }
-            spreads[r].push_back(spread.srgb());
+    /// Of row number r, the next one.
+    std::vector<float> next(std::size_t r) {
+        know(r + 1, known_[2]);
+        for (KnownRow& row : known_) row.first = 0;
+        std::vector<float> spreads;
+        spreads.reserve(needy_[r].size());
+        for (std::size_t i = 0; i < needy_[r].size(); ++i) spreads.push_back(spread(i));
+        std::rotate(std::begin(known_), std::begin(known_) + 1, std::end(known_));
+        return spreads;
+    }
+
+  private:
+    void know(std::size_t r, KnownRow& row) const {
+        row.estimates.clear();
+        row.needy = r < needy_.size() ? &needy_[r] : nullptr;
+        if (row.needy == nullptr) return;
+        for (const NeedyPixel& pixel : *row.needy) {
+            row.estimates.push_back(
+                estimator_.estimate(pixel.x, rows_.begin + static_cast<int>(r)));
         }
+    }
+
+    float spread(std::size_t i) {
+        const NeedyPixel& pixel = (*known_[1].needy)[i];
+        Spread spread(known_[1].estimates[i], pixel.needs, lights_, picks_);
+        for (KnownRow& row : known_) {
+            if (row.needy == nullptr) continue;
+            const std::vector<NeedyPixel>& needy = *row.needy;
+            while (row.first < needy.size() && needy[row.first].x < pixel.x - 1) ++row.first;
+            for (std::size_t k = row.first; k < needy.size() && needy[k].x <= pixel.x + 1; ++k) {
+                if (&needy[k] != &pixel) spread.add_neighbour(row.estimates[k]);
+            }
+        }
+        return spread.srgb();
+    }
+
+    Estimator estimator_;
+    bool picks_;
+    int lights_;
+    RowRange rows_;
+    const NeedyRows& needy_;
+    KnownRow known_[3];  ///< above, own, below
+};
+
+SpreadRows spread_all(const NeedInputs& inputs, RowRange rows, const NeedyRows& needy) {
+    constexpr std::size_t kRowsPerBlock = 16;
+    SpreadRows spreads(needy.size());
+    for_each_block(needy.size(), kRowsPerBlock, inputs.tracer.threads, [&](BlockRange block) {
+        SpreadFinder finder(inputs, rows, needy, block.begin);
+        for (std::size_t r = block.begin; r < block.end; ++r) spreads[r] = finder.next(r);
     });
     return spreads;
 }
@@ -228,8 +261,7 @@ std::uint32_t power_of_two_near(float samples) {
 }  // namespace
 
 NeededSamples::NeededSamples(const NeedInputs& inputs, RowRange rows, const NeedyRows& needy)
-    : spreads_(spread_all(inputs, needy, estimate_all(inputs, rows, needy))),
-      mean_(mean_of(spreads_)) {}
+    : spreads_(spread_all(inputs, rows, needy)), mean_(mean_of(spreads_)) {}
 
 std::uint32_t NeededSamples::samples(std::size_t row, std::size_t i, int edge_spp) const {
     if (!(mean_ > 0)) return 0;
@@ -239,6 +271,21 @@ std::uint32_t NeededSamples::samples(std::size_t row, std::size_t i, int edge_sp
     if (mean_samples < kLeastSamples && wanted < 0.5f * kLeastSamples) return 0;
     return power_of_two_near(
         std::clamp(wanted, kLeastSamples, std::max(kLeastSamples, kLeastSamples * mean_samples)));
+}
+
+double NeededSamples::error(const NeedyRows& needy, int edge_spp, int pilot_spp) const {
+    constexpr double kSlope = 1.4;     // of one pixel's error, by Sobol points
+    constexpr double kSmoothed = 0.1;  // of it is left by smooth_half_shadow()
+    double sum = 0;
+    for (std::size_t r = 0; r < spreads_.size(); ++r) {
+        for (std::size_t i = 0; i < spreads_[r].size(); ++i) {
+            const double of_one = std::pow(static_cast<double>(spreads_[r][i]), 2) / 3;
+            const double given = std::max<double>(samples(r, i, edge_spp), pilot_spp);
+            const bool smoothed = given <= pilot_spp && needy[r][i].needs == kNeedsShadow;
+            sum += of_one * std::pow(given, -kSlope) * (smoothed ? kSmoothed : 1.0);
+        }
+    }
+    return sum;
 }
 
 void NeededSamples::give(int edge_spp, NeedyRows& needy) const {

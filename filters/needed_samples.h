@@ -11,6 +11,9 @@
 
 namespace vecino {
 
+/// Of a pixel that gets any. Fewer save little time and cost much.
+constexpr int kLeastEdgeSpp = 16;
+
 /// What decides.
 struct NeedInputs {
     const RecordTracer& tracer;
@@ -28,6 +31,10 @@ class NeededSamples {
 
     /// What give() gives pixel number i of a row.
     [[nodiscard]] std::uint32_t samples(std::size_t row, std::size_t i, int edge_spp) const;
+
+    /// What is left of the error then: a sum over needy pixels of mean squares in sRGB. needy: as
+    /// before. Of pilot_spp samples is what gets no others.
+    [[nodiscard]] double error(const NeedyRows& needy, int edge_spp, int pilot_spp) const;
 
   private:
     std::vector<std::vector<float>> spreads_;  ///< standard deviation of one sample, sRGB

@@ -40,13 +40,12 @@ double share_of(double part, double whole, double usual) {
     return whole > 0 ? part / whole : usual;
 }
 
-}  // namespace
-
-double quickest(const Trial& trial) {
-    double seconds = trial(0);
-    for (int i = 1; i < 4; ++i) seconds = std::min(seconds, trial(i));
-    return seconds;
+/// Of a pixel that gets paths of its own.
+double path_noise(const RecordCheck& check, const SurfaceRecordsPlan& plan) {
+    return check.path_noise * std::pow(std::max(plan.edge_spp, 1), -kRecordSlope);
 }
+
+}  // namespace
 
 Pace::Pace(double seconds, int threads, const PilotFindings& found)
     : seconds_(seconds),
@@ -74,6 +73,17 @@ void Pace::choose_first(std::vector<BandRows>& bands, const std::vector<BandSurv
     until_s_ = spent_s + share * (until_s_ - spent_s);
 }
 
+double Pace::typical(const Trial& trial) const {
+    constexpr double kShort_s = 0.15;
+    double seconds[] = {trial(0), trial(1)};
+    std::ranges::sort(seconds);
+    if (seconds_ < kShort_s) return 0.5 * (seconds[0] + seconds[1]);
+    double more[] = {trial(2), trial(3)};
+    std::ranges::sort(more);
+    // Without the least and the most of four.
+    return 0.5 * (std::max(seconds[0], more[0]) + std::min(seconds[1], more[1]));
+}
+
 void Pace::take_stage(double work_s, double seconds) {
     constexpr double kMost = 16;
     // What starts a stage is much of a short one.
@@ -94,6 +104,9 @@ void Pace::take_records(const PaceFindings& here) {
     // What was tried may have missed what there is.
     constexpr double kLeast = 0.01;
     errors.record_noise = std::max(here.record_noise, kLeast * kUsualErrors.record_noise);
+    // Where cells hold several surfaces, each has fewer records to be fitted to.
+    constexpr double kUsualExcess = 0.2, kMostTimes = 10;
+    errors.bias_at_8 *= std::clamp((here.surfaces - 1) / kUsualExcess, 1.0, kMostTimes);
     // Light that is the same all over, as of a sky, has no noise; it is wrong where it is hidden.
     if (!here.has_record_light) errors.bias_at_8 *= kLeast;
 }
@@ -141,6 +154,39 @@ void Pace::choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan) {
         plan.refined_record_paths =
             whole_packets(static_cast<double>(chosen) * plan.refined_record_paths / planned);
     }
+}
+
+RecordCheckSize Pace::check_size(const SurfaceRecordsPlan& plan) const {
+    constexpr double kShare = 0.02;
+    constexpr int kMostPixels = 256, kFewestPixels = 32;  // fewer tell nothing
+    // Pixels differ more than paths of each are noisy.
+    const int paths = std::clamp(plan.record_paths / 64, 16, 64);
+    const double pixel_s = kCheckedHits * (paths + kRecordStart) * rates_.record_path_s;
+    const double pixels = std::min(kShare * left_s() / pixel_s, double{kMostPixels});
+    return {pixels < kFewestPixels ? 0 : static_cast<std::size_t>(pixels),
+            static_cast<std::uint32_t>(paths)};
+}
+
+bool Pace::wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan) const {
+    SurfaceRecordsPlan fewer = plan;
+    fewer.edge_spp = static_cast<int>(plan.edge_spp / kPathWork);
+    if (fewer.edge_spp < kLeastEdgeSpp) return false;
+    const double lost = here.samples * (edge_noise_share(fewer) / edge_noise_share(plan) - 1);
+    const double wrong = here.at_shared.error - here.at_shared.standard_error;
+    return (wrong - path_noise(here.at_shared, fewer)) * here.shared_pixels > lost;
+}
+
+double Pace::expected_error(const ErrorFindings& here, const SurfaceRecordsPlan& plan) const {
+    SurfaceRecordsPlan records = plan;
+    records.edge_spp = kMostEdgeSpp;
+    const double as_a_rule = surface_records_error(found_, records);
+    const double elsewhere = is_sure(here.elsewhere) ? here.elsewhere.error : as_a_rule;
+    const double at_shared = plan.edge_light == EdgeLight::paths
+                                 ? path_noise(here.at_shared, plan)
+                                 : std::max(here.at_shared.error, as_a_rule);
+    return (here.samples + here.shared_pixels * at_shared +
+            (found_.pixels - here.shared_pixels) * elsewhere) /
+           found_.pixels;
 }
 
 void Pace::choose_edges(const std::function<double(int)>& cost, double unit_s,

@@ -11,6 +11,7 @@
 #include "core/timing.h"
 #include "filters/auto_plan.h"
 #include "filters/band_survey.h"
+#include "filters/record_check.h"
 #include "filters/records.h"
 
 namespace vecino {
@@ -20,12 +21,6 @@ namespace vecino {
 /// thread's own time, since what other programs take of so short a while says nothing.
 using Trial = std::function<double(int)>;
 
-/// Fewer samples of needy pixels than this save little time and cost much.
-constexpr int kLeastEdgeSpp = 16;
-
-/// Of a few trials that which was disturbed least.
-double quickest(const Trial& trial);
-
 /// What is known once first samples are there, and a few more were tried.
 struct PaceFindings {
     double needy_pixels = 0;
@@ -34,6 +29,14 @@ struct PaceFindings {
     bool has_record_light = true;
     double path_s = 0;    ///< one path of a record, on one thread
     double sample_s = 0;  ///< one further sample of a needy pixel, on one thread
+    double surfaces = 1;  ///< of a cell of 16 pixels that has any
+};
+
+/// What is known of errors once records are there.
+struct ErrorFindings {
+    double samples = 0;        ///< sum over needy pixels, of what their samples leave
+    double shared_pixels = 0;  ///< several surfaces may share so many
+    RecordCheck at_shared, elsewhere;
 };
 
 class Pace {
@@ -52,6 +55,10 @@ class Pace {
     /// the others. That with most needy pixels takes its place.
     void choose_first(std::vector<BandRows>& bands, const std::vector<BandSurvey>& surveys);
 
+    /// The middle of a few trials: places differ, and some may be disturbed. Of fewer where time is
+    /// short.
+    [[nodiscard]] double typical(const Trial& trial) const;
+
     /// What the machine makes of its threads: a stage of so much work, by a trial, took so long.
     void take_stage(double work_s, double seconds);
 
@@ -65,6 +72,14 @@ class Pace {
     /// unit_s: one of these, on one thread.
     void choose_edges(const std::function<double(int)>& cost, double unit_s,
                       SurfaceRecordsPlan& plan);
+
+    /// How large a check of records may be, that is a small part of what time is left.
+    [[nodiscard]] RecordCheckSize check_size(const SurfaceRecordsPlan& plan) const;
+    /// Whether whole paths are better at edges than records, at the price of having fewer samples.
+    [[nodiscard]] bool wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan) const;
+    /// Of the frame: a mean square in sRGB.
+    [[nodiscard]] double expected_error(const ErrorFindings& here,
+                                        const SurfaceRecordsPlan& plan) const;
 
   private:
     void take_records(const PaceFindings& here);

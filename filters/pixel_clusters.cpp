@@ -90,7 +90,6 @@ Cluster PixelClusters::first_cluster(int x, int y) const {
     return to;
 }
 
-/// Surface, first sample and first normal stay.
 void PixelClusters::store_first(int x, int y, const Cluster& from) {
     PilotBlock& to = blocks_[block_index(x, y)];
     const int i = x % kPilotPixels;

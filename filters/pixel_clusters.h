@@ -57,6 +57,8 @@ class PixelClusters {
     void store(int x, int y, const ClusterList& list);
     /// The first surface of a pixel.
     [[nodiscard]] Cluster first_cluster(int x, int y) const;
+    /// Changes what is known of it; surface, first sample and first normal stay.
+    void store_first(int x, int y, const Cluster& cluster);
 
     /// Calls visit(cluster) for each of a pixel's surfaces.
     template <class Visit>
@@ -84,7 +86,6 @@ class PixelClusters {
     }
     void take_spill(const PilotSpill& spill, int x, int y);
     ClusterList& make_list(int x, int y);
-    void store_first(int x, int y, const Cluster& cluster);
 
     int width_;
     RowRange rows_;

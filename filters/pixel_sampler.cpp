@@ -15,7 +15,7 @@ SampledPixel PixelSampler::sample(const NeedyPixel& pixel, int y) const {
     out.clusters = inputs_.clusters.clusters(pixel.x, y);
     if (pixel.samples <= pilot && !out.clusters.crowded) return out;
     const int before = out.clusters.count;
-    if (!out.clusters.crowded) {
+    if (paths_of(pixel, out.clusters.crowded) == 0) {
         out.rays += tracer.kernel.add_samples(
             tracer.task,
             {pixel.x, y, pilot, pixel.samples, known_surface(pixel, out.clusters),
@@ -23,8 +23,9 @@ SampledPixel PixelSampler::sample(const NeedyPixel& pixel, int y) const {
             out.clusters);
         out.samples = pixel.samples - pilot;
     }
-    if (out.clusters.crowded) {
-        trace_paths(pixel, y, out);
+    // By now it may be crowded.
+    if (const std::uint32_t paths = paths_of(pixel, out.clusters.crowded); paths > 0) {
+        trace_paths({pixel.x, y}, paths, out);
     } else {
         for (int k = before; k < out.clusters.count; ++k) adopt(k, {pixel.x, y}, out);
     }
@@ -32,34 +33,37 @@ SampledPixel PixelSampler::sample(const NeedyPixel& pixel, int y) const {
 }
 
 double PixelSampler::work(const NeedyPixel& pixel, int y) const {
-    constexpr double kPath = 3;  // of a path, held against a sample
     const ClusterList* const list = inputs_.clusters.list(pixel.x, y);
-    if (list != nullptr && list->crowded) return kPath * crowded_samples(pixel) + kEdgeStart;
+    const bool crowded = list != nullptr && list->crowded;
     const auto pilot = static_cast<std::uint32_t>(inputs_.plan.pilot_spp);
-    return pixel.samples > pilot ? pixel.samples - pilot + kEdgeStart : 0;
+    if (pixel.samples <= pilot && !crowded) return 0;
+    const std::uint32_t paths = paths_of(pixel, crowded);
+    return (paths > 0 ? kPathWork * paths : pixel.samples - pilot) + kEdgeStart;
 }
 
-/// What is known of a crowded pixel is not all: it needs more samples than its clusters say.
-std::uint32_t PixelSampler::crowded_samples(const NeedyPixel& pixel) const {
+/// Plain paths of a pixel; none where records and clusters do.
+std::uint32_t PixelSampler::paths_of(const NeedyPixel& pixel, bool crowded) const {
+    // What is known of a crowded pixel is not all: it needs more samples than its clusters say.
     constexpr std::uint32_t kMore = 8;
-    return std::max(pixel.samples, kMore * static_cast<std::uint32_t>(inputs_.plan.edge_spp));
+    const SurfaceRecordsPlan& plan = inputs_.plan;
+    if (crowded) return std::max(pixel.samples, kMore * static_cast<std::uint32_t>(plan.edge_spp));
+    const bool wanted = plan.edge_light == EdgeLight::paths && (pixel.needs & kNeedsCoverage) != 0;
+    return wanted ? pixel.samples : 0;
 }
 
-/// A crowded pixel by plain paths.
-void PixelSampler::trace_paths(const NeedyPixel& pixel, int y, SampledPixel& out) const {
-    const std::uint32_t paths = crowded_samples(pixel);
+void PixelSampler::trace_paths(Pixel at, std::uint32_t paths, SampledPixel& out) const {
     PixelAccumulator sums(VarianceOf::nothing);
     SampleBlock block;
-    for (std::uint32_t at = 0; at < paths; at += kBlockSamples) {
-        const int count = std::min(kBlockSamples, static_cast<int>(paths - at));
+    for (std::uint32_t done = 0; done < paths; done += kBlockSamples) {
+        const int count = std::min(kBlockSamples, static_cast<int>(paths - done));
         out.rays +=
-            inputs_.kernel.trace_samples(inputs_.tracer.task, {pixel.x, y, at, count}, block, {});
+            inputs_.kernel.trace_samples(inputs_.tracer.task, {at.x, at.y, done, count}, block, {});
         sums.add(block, count);
     }
     std::array<ExactSum::Digits, kMostSums> digits;
     sums.sums(digits);
     out.samples = paths;
-    out.crowded = CrowdedPixel{pixel.x, pixel_values(digits, VarianceOf::nothing)};
+    out.traced = TracedPixel{at.x, pixel_values(digits, VarianceOf::nothing)};
 }
 
 /// The quad or sphere that fills a pixel and all around it; else -1.

@@ -16,8 +16,8 @@ namespace vecino {
 
 /// What further samples made of a pixel.
 struct SampledPixel {
-    ClusterList clusters;  ///< all samples, the first ones included; not of a crowded pixel
-    std::optional<CrowdedPixel> crowded;
+    ClusterList clusters;  ///< all samples, the first ones included; not of a traced pixel
+    std::optional<TracedPixel> traced;
     std::vector<Orphan> orphans;
     std::uint64_t rays = 0;
     std::uint64_t samples = 0;  ///< none: the pixel is as it was
@@ -42,8 +42,8 @@ class PixelSampler {
     [[nodiscard]] double work(const NeedyPixel& pixel, int y) const;
 
   private:
-    [[nodiscard]] std::uint32_t crowded_samples(const NeedyPixel& pixel) const;
-    void trace_paths(const NeedyPixel& pixel, int y, SampledPixel& out) const;
+    [[nodiscard]] std::uint32_t paths_of(const NeedyPixel& pixel, bool crowded) const;
+    void trace_paths(Pixel at, std::uint32_t paths, SampledPixel& out) const;
     [[nodiscard]] std::int32_t known_surface(const NeedyPixel& pixel,
                                              const ClusterList& list) const;
     void adopt(int number, Pixel at, SampledPixel& out) const;

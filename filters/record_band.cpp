@@ -12,9 +12,11 @@
 #include "core/parallel.h"
 #include "core/render_task.h"
 #include "core/timing.h"
+#include "filters/half_shadow.h"
 #include "filters/needed_samples.h"
 #include "filters/pixel_needs.h"
 #include "filters/pixel_sampler.h"
+#include "filters/record_check.h"
 #include "filters/record_resolve.h"
 #include "filters/records.h"
 
@@ -52,7 +54,10 @@ class Band {
         if (paced) timed(times.trials_s, [&] { choose_edges(); });
         if (plan_.edge_spp > 0) needed_->give(plan_.edge_spp, needy_);
         context_.checkpoint();
-        timed(times.samples_s, [&] { add_samples(); });
+        timed(times.samples_s, [&] {
+            smooth_half_shadow(tracer_, rows_, needy_, plan_.pilot_spp, clusters_);
+            add_samples();
+        });
         context_.checkpoint();
         timed(times.resolve_s, [&] { resolve(); });
         context_.checkpoint();
@@ -142,8 +147,8 @@ class Band {
                 rays += made.rays;
                 samples += made.samples;
                 if (made.samples == 0) continue;
-                if (made.crowded) {
-                    exceptions.crowded.push_back(*made.crowded);
+                if (made.traced) {
+                    exceptions.traced.push_back(*made.traced);
                 } else {
                     clusters_.store(pixel.x, y, made.clusters);
                 }
@@ -179,7 +184,7 @@ class Band {
         const int columns = (clusters_.width() + kPilotPixels - 1) / kPilotPixels;
         const int blocks = columns * (rows_.end - rows_.begin);
         const int step = std::max(blocks / kBlocks, 1);
-        return quickest([&](int number) {
+        return context_.pace->typical([&](int number) {
             int pixels = 0;
             const ThreadStopwatch watch;
             for (int i = kApart * number % step; i < blocks; i += step, pixels += kPilotPixels) {
@@ -197,16 +202,17 @@ class Band {
         findings.needy_pixels = needy_pixels();
         if (has_records(tracer_.task)) {
             findings.has_record_light = false;
-            findings.path_s = quickest([this, &findings](int number) {
+            findings.path_s = context_.pace->typical([this, &findings](int number) {
                 const RecordTrial made = try_records({tracer_, clusters_}, number);
                 findings.records_at_16 = made.records_at_16;
                 findings.has_record_light |= made.has_light;
+                findings.surfaces = made.surfaces;
                 findings.record_noise =
                     kFitNoise * made.noise * std::pow(made.paths / 512.0, kRecordSlope);
                 return made.path_s;
             });
         }
-        findings.sample_s = quickest([this](int number) {
+        findings.sample_s = context_.pace->typical([this](int number) {
             return try_pixels(number, [this](std::size_t, std::size_t) {
                 return static_cast<std::uint32_t>(plan_.pilot_spp) + kTrySamples;
             });
@@ -215,11 +221,39 @@ class Band {
     }
 
     void choose_edges() {
-        const int edge_spp = std::max(plan_.edge_spp, kLeastEdgeSpp);
+        choose_edge_spp();
+        ErrorFindings findings = find_errors();
+        if (context_.pace->wants_paths(findings, plan_)) {
+            plan_.edge_light = EdgeLight::paths;
+            choose_edge_spp();
+            findings.samples = needed_->error(needy_, plan_.edge_spp, plan_.pilot_spp);
+        }
+        if (out_.counts.bands == 1)
+            out_.expected_error = context_.pace->expected_error(findings, plan_);
+    }
+
+    ErrorFindings find_errors() const {
+        const std::vector<Pixel> shared = shared_pixels(rows_, needy_);
+        ErrorFindings findings;
+        findings.samples = needed_->error(needy_, plan_.edge_spp, plan_.pilot_spp);
+        findings.shared_pixels = static_cast<double>(shared.size());
+        if (!has_records(tracer_.task)) return findings;
+        const NeedInputs inputs{tracer_, clusters_, map_};
+        const RecordCheckSize size = context_.pace->check_size(plan_);
+        findings.at_shared = check_records(inputs, shared, size);
+        findings.elsewhere =
+            check_records(inputs, scattered_pixels(rows_, clusters_.width(), size.pixels), size);
+        return findings;
+    }
+
+    void choose_edge_spp() {
+        constexpr int kManySpp = 256;  // more take as long each
+        const int edge_spp = std::clamp(plan_.edge_spp, kLeastEdgeSpp, kManySpp);
         const auto given = [this, edge_spp](std::size_t row, std::size_t i) {
             return needed_->samples(row, i, edge_spp);
         };
-        const double unit_s = quickest([&](int number) { return try_pixels(number, given); });
+        const double unit_s =
+            context_.pace->typical([&](int number) { return try_pixels(number, given); });
         context_.pace->choose_edges([this](int samples) { return work_of(samples); }, unit_s,
                                     plan_);
     }
@@ -233,7 +267,9 @@ class Band {
             int y;
         };
         std::vector<Place> places;
-        visit_some({number, 128, 16}, [&](std::size_t r, std::size_t i) {
+        // All trials together are a quarter of what there is to do, at most.
+        const auto pixels = static_cast<std::size_t>(std::clamp(needy_pixels() / 16, 16.0, 128.0));
+        visit_some({number, pixels, 16}, [&](std::size_t r, std::size_t i) {
             places.push_back({needy_[r][i], rows_.begin + static_cast<int>(r)});
             places.back().pixel.samples = samples(r, i);
         });

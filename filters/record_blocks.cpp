@@ -38,10 +38,13 @@ VECINO_INLINE void add_fit(const Record& record, const PointBlock& points, const
                            const float* u, const float* v, std::size_t channel, Sums& sums) {
     (void)points;
     const auto& f = record.fit[channel];
+    const float least = record.least[channel], most = record.most[channel];
     float* const to = sums.light[channel];
     for (int i = 0; i < kLanes; ++i) {
-        to[i] += weight[i] *
-                 (f[0] + u[i] * (f[1] + u[i] * f[3] + v[i] * f[4]) + v[i] * (f[2] + v[i] * f[5]));
+        const float value =
+            f[0] + u[i] * (f[1] + u[i] * f[3] + v[i] * f[4]) + v[i] * (f[2] + v[i] * f[5]);
+        const float above = value > least ? value : least;
+        to[i] += weight[i] * (above < most ? above : most);
     }
 }
 

@@ -87,7 +87,8 @@ bool solve(NormalEquations& e, std::size_t n, std::size_t channels) {
 /// A record right beside something else says little of what is farther off than that (Ward's
 /// harmonic mean distance): one of a few such in a cell would darken all of it.
 double trust(const Record& record, float distance2_world, float footprint_world) {
-    constexpr float kHarmonicMeans = 2, kOwn = 0.35f;  // of a cell: it speaks for that much itself
+    constexpr float kHarmonicMeans = 1.4f,
+                    kOwn = 0.35f;  // of a cell: it speaks for that much itself
     const float own = kOwn * footprint_world;
     const float off2 = (distance2_world + own * own) * record.nearness * record.nearness *
                        (1 / (kHarmonicMeans * kHarmonicMeans));
@@ -110,6 +111,7 @@ class RecordFitter {
                 add_cell(level, {column + dx, row + dy, 1.0}, record, equations);
         }
         set_fit(equations, record);
+        set_limits(equations, record);
     }
 
   private:
@@ -196,6 +198,16 @@ class RecordFitter {
             }
         }
         return true;
+    }
+
+    /// Where light breaks off, as at a contact, a polynomial swings beyond all that it was made of.
+    void set_limits(const NormalEquations& equations, Record& record) const {
+        constexpr float kBeyond = 0.1f;  // of their range: a peak may lie between them
+        for (std::size_t c = 0; c < map_.channels; ++c) {
+            const float slack = kBeyond * (equations.most[c] - equations.least[c]);
+            record.least[c] = std::max(equations.least[c] - slack, 0.0f);
+            record.most[c] = equations.most[c] + slack;
+        }
     }
 
     const RecordMap& map_;

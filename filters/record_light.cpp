@@ -74,7 +74,8 @@ class Blend {
         const float u = glm::dot(off, record.u_axis), v = glm::dot(off, record.v_axis);
         for (std::size_t c = 0; c < map_.channels; ++c) {
             const auto& f = record.fit[c];
-            sum_[c] += weight * (f[0] + u * (f[1] + u * f[3] + v * f[4]) + v * (f[2] + v * f[5]));
+            const float value = f[0] + u * (f[1] + u * f[3] + v * f[4]) + v * (f[2] + v * f[5]);
+            sum_[c] += weight * std::min(std::max(value, record.least[c]), record.most[c]);
         }
         weight_ += weight;
     }
@@ -89,6 +90,22 @@ class Blend {
 
 bool record_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light) {
     return Blend(map, point).run(light);
+}
+
+void rough_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light) {
+    constexpr float kSameSide = 0.7f;  // cosine between normals
+    light = {};
+    if (map.levels.empty()) return;
+    const RecordLevel& level = map.levels[finest_level(map, point.x, point.y)];
+    int count = 0;
+    for (const Record& record : level.at(point.x / level.cell(), point.y / level.cell())) {
+        if (record.object != point.object) continue;
+        if (glm::dot(record.normal_world, point.normal_world) < kSameSide) continue;
+        for (std::size_t c = 0; c < map.channels; ++c) light[c] += record.light[c];
+        ++count;
+    }
+    for (float& value : light) value /= static_cast<float>(std::max(count, 1));
+    if (count == 0) record_light(map, point, light);
 }
 
 }  // namespace vecino

@@ -91,7 +91,7 @@ class RowResolver {
 
     std::uint64_t run() {
         for (int x = 0; x < inputs_.clusters.width(); x += kLanes) resolve_block(x);
-        for (const CrowdedPixel& pixel : exceptions_.crowded)
+        for (const TracedPixel& pixel : exceptions_.traced)
             store_values(pixel.values, {pixel.x, y_}, frame_);
         return non_finite_;
     }

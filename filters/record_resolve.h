@@ -18,8 +18,9 @@ struct Orphan {
     RecordValue light;
 };
 
-/// A pixel of more surfaces than there are clusters: what paths made of it.
-struct CrowdedPixel {
+/// What paths made of a pixel: of one with more surfaces than there are clusters, or with contacts
+/// that records miss.
+struct TracedPixel {
     int x;
     PixelValues values;
 };
@@ -27,7 +28,7 @@ struct CrowdedPixel {
 /// What goes beyond clusters and records in a row, in order of x.
 struct RowExceptions {
     std::vector<Orphan> orphans;
-    std::vector<CrowdedPixel> crowded;
+    std::vector<TracedPixel> traced;
 };
 
 struct ResolveInputs {

@@ -244,6 +244,13 @@ double shown_noise(const RecordInputs& inputs, const Record& record) {
     return sum / 3;
 }
 
+/// Their mean.
+double shown_noise(const RecordInputs& inputs, const std::vector<Record>& records) {
+    double sum = 0;
+    for (const Record& record : records) sum += shown_noise(inputs, record);
+    return sum / std::max(static_cast<double>(records.size()), 1.0);
+}
+
 }  // namespace
 
 RecordWork gather_records(const RecordInputs& inputs, const SurfaceRecordsPlan& plan,
@@ -286,19 +293,23 @@ RecordTrial try_records(const RecordInputs& inputs, int number) {
     const double one_of = static_cast<double>(level.active.size()) / std::max(cells, 1.0);
     const RecordTracer tracer{inputs.tracer.task, inputs.tracer.kernel, 1};
     const Candidates candidates = place_records(inputs.clusters, level, tracer.threads);
+    double occupied = 0;
+    for (std::size_t i = 0; i < level.active.size(); ++i)
+        occupied += level.first[i + 1] > level.first[i] ? 1 : 0;
     RecordWork work;
     const ThreadStopwatch watch;
     gather_level(tracer, candidates, kPaths, level, work);
     const double seconds = watch.seconds();
     const auto records = std::max(static_cast<double>(candidates.size()), 1.0);
-    double noise = 0;
     bool has_light = false;
-    for (const Record& record : level.records) {
-        noise += shown_noise(inputs, record);
+    for (const Record& record : level.records)
         has_light |= std::ranges::any_of(record.light, [](float light) { return light > 0; });
-    }
     return {static_cast<double>(candidates.size()) * one_of,
-            seconds / (records * (kPaths + kRecordStart)), noise / records, kPaths, has_light};
+            seconds / (records * (kPaths + kRecordStart)),
+            shown_noise(inputs, level.records),
+            kPaths,
+            has_light,
+            records / std::max(occupied, 1.0)};
 }
 
 }  // namespace vecino

@@ -35,6 +35,7 @@ struct Record {
     glm::vec3 variance;        ///< of the mean of both, an upper bound
     glm::vec3 u_axis, v_axis;  ///< tangents; times (position - position_world) they give u and v
     std::array<std::array<float, kFitTerms>, kRecordChannels> fit;
+    RecordValue least, most;  ///< that the fit may say
 };
 
 /// Cells of one size. Those that are not active have no records.
@@ -114,6 +115,7 @@ struct RecordTrial {
     double noise;          ///< mean square in sRGB of what their light adds to pixels
     int paths;             ///< of each
     bool has_light;        ///< whether some of it reaches them
+    double surfaces;       ///< of a cell that has any
 };
 RecordTrial try_records(const RecordInputs& inputs, int number);
 
@@ -136,5 +138,9 @@ struct SurfacePoint {
 /// Light over pi at a point of a surface, blended from the fits around it. False, and zeros, where
 /// no record is near.
 bool record_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light);
+
+/// The same in a fraction of the time, as good as to say how much light there is about: the mean of
+/// the records of the point's own cell. Where it has none, as record_light().
+void rough_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light);
 
 }  // namespace vecino

@@ -10,6 +10,12 @@
 
 namespace vecino {
 
+/// Where indirect light of pixels that several surfaces share comes from.
+enum class EdgeLight {
+    records,
+    paths,  ///< of their own: contacts may be finer than records know of
+};
+
 /// How many samples go where.
 struct SurfaceRecordsPlan {
     int pilot_spp = 8;       ///< first samples of every pixel; 1 to 4096
@@ -22,6 +28,7 @@ struct SurfaceRecordsPlan {
     double refine_tau = 0.15;        ///< cells are halved down to this share of the distance to
                                      ///< what is around them; > 0
     int fit_order = 2;               ///< of the polynomials between records, at most; 0 to 2
+    EdgeLight edge_light = EdgeLight::records;  ///< of pixels that surfaces share
 
     /// Whether all values are equal.
     friend bool operator==(const SurfaceRecordsPlan&, const SurfaceRecordsPlan&) = default;

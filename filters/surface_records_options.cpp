@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/json_schema.h"
+#include "core/named_values.h"
 #include "filters/method_rows.h"
 
 namespace vecino {
@@ -19,6 +20,9 @@ constexpr IntegerKind kCell{1, 256};
 constexpr IntegerKind kLevels{0, 8};
 constexpr IntegerKind kPaths{1, 1 << 20};
 constexpr IntegerKind kOrder{0, 2};
+constexpr Named<EdgeLight> kEdgeLights[] = {{"records", EdgeLight::records},
+                                            {"paths", EdgeLight::paths}};
+constexpr ChoiceKind kEdgeLight{kEdgeLights};
 /// In double, which prints as it was given.
 struct NumberKind {
     NumberRange range;
@@ -82,6 +86,15 @@ constexpr MethodOption row(std::string_view name, std::string_view flag, std::st
             schema<kKind>};
 }
 
+nlohmann::json get_edge_light(const MethodParameters& parameters) {
+    const auto& value = parameters.surface_records.edge_light;
+    return value ? name_of(kEdgeLights, *value) : "auto";
+}
+
+std::string edge_light_slug(const MethodParameters& parameters) {
+    return "edges_" + get_edge_light(parameters).get<std::string>();
+}
+
 constexpr char kPilot[] = "pilot", kEdge[] = "edge", kCellSlug[] = "cell", kLevelSlug[] = "lev",
                kRecord[] = "paths", kRefined[] = "fine", kSigma[] = "sigma", kTau[] = "tau",
                kOrderSlug[] = "order";
@@ -106,6 +119,8 @@ const MethodOption kRows[] = {
         "a cell is halved if it is larger than this share of the distance to what is around it"),
     row<kOrder, &Options::fit_order, kOrderSlug>("fit_order", "--fit-order", "an integer from 0 to 2, or auto",
         "of the polynomials between records, at most"),
+    {"edge_light", "--edge-light", "records, paths, or auto", "indirect light of pixels that surfaces share; paths know of the finest contacts",
+     set<kEdgeLight, &Options::edge_light>, get_edge_light, edge_light_slug, schema<kEdgeLight>},
 };
 // clang-format on
 
@@ -127,6 +142,7 @@ SurfaceRecordsPlan plan_of(const SurfaceRecordsOptions& options, int spp) {
     put(options.fit_sigma, plan.fit_sigma);
     put(options.refine_tau, plan.refine_tau);
     put(options.fit_order, plan.fit_order);
+    put(options.edge_light, plan.edge_light);
     return plan;
 }
 
@@ -149,6 +165,7 @@ MethodRender method_render(StagedRender staged) {
                  {"fit_sigma", plan.fit_sigma},
                  {"refine_tau", plan.refine_tau},
                  {"fit_order", plan.fit_order},
+                 {"edge_light", name_of(kEdgeLights, plan.edge_light)},
                  {"needy_pixels", staged.counts.needy_pixels},
                  {"records", staged.counts.records}};
     out.stage_s = {{"pilot", times.pilot_s},     {"records", times.records_s},

@@ -21,6 +21,7 @@ struct SurfaceRecordsOptions {
     std::optional<double> fit_sigma;          ///< SurfaceRecordsPlan::fit_sigma
     std::optional<double> refine_tau;         ///< SurfaceRecordsPlan::refine_tau
     std::optional<int> fit_order;             ///< SurfaceRecordsPlan::fit_order
+    std::optional<EdgeLight> edge_light;      ///< SurfaceRecordsPlan::edge_light
 };
 
 /// The plan of surface_records_plan(spp), with what is given in its place.

@@ -3,6 +3,7 @@
 // The stages of the method surface_records, for those who want to know what each takes.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "filters/pixel_clusters.h"
@@ -11,6 +12,8 @@
 namespace vecino {
 
 class Pace;
+
+constexpr double kPathWork = 3;  ///< of a whole path of a pixel, held against a sample of it
 
 // What a stage of surface_records costs before its first sample, in samples: measured at 512x512,
 // and scene by scene much the same.
@@ -46,6 +49,8 @@ struct StagedRender {
     StageTimes times;
     StageCounts counts;
     SurfaceRecordsPlan plan;  ///< as it came to be
+    /// Mean square in sRGB; of a frame of one band that a pace chose the plan for.
+    std::optional<double> expected_error = std::nullopt;
 };
 
 /// How a frame is made: by a plan, or by one that a pace chooses in the course of it.

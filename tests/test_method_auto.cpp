@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/image_io.h"
+#include "core/parallel.h"
 #include "filters/auto_pilot.h"
 #include "filters/auto_plan.h"
 #include "filters/methods.h"
@@ -14,6 +15,7 @@
 #include "tests/catch.h"
 #include "tests/error_of.h"
 #include "tests/program.h"
+#include "tests/record_renders.h"
 
 using namespace vecino;
 
@@ -47,7 +49,8 @@ MethodRequest scheduled(const std::string& schedule, MethodRequest request, cons
     for (std::string flag, text; words >> flag >> text;) {
         if (flag == "--method") method = &find_method(text);
         if (flag == "--spp") request.settings.spp = std::stoi(text);
-        const nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+        nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+        if (value.is_discarded()) value = text;
         for (const MethodOption& row : method_options()) {
             if (row.flag == flag) row.set(request.parameters, JsonValue(value, "test", flag));
         }
@@ -214,7 +217,7 @@ TEST_CASE("the program takes a budget and says how to repeat it", "[auto]") {
 }
 
 TEST_CASE("a paced frame has the bits of the plan that it ended with", "[auto]") {
-    for (const char* name : {"cornell_sphere", "corridor", "open"}) {
+    for (const char* name : {"cornell_sphere", "corridor", "open", "failures/f10_odd_size"}) {
         const Scene scene = load_scene(kScenes + name + ".json");
         for (const double seconds : {0.005, 0.05, 0.4}) {
             INFO(name << ", " << seconds);
@@ -275,6 +278,47 @@ TEST_CASE("a pace gives to records and samples what the time allows", "[auto]") 
     CHECK(much.edge_spp > 1000);
     CHECK(edges_in(2, 16).edge_spp > 2 * much.edge_spp);
     CHECK(edges_in(1e-6, 2).edge_spp >= 1);
+}
+
+TEST_CASE("paths at edges are for records that are wrong there by more than paths are noisy",
+          "[auto]") {
+    Pace pace(1, 2, usual_findings());
+    pace.begin();
+    SurfaceRecordsPlan plan = Pace::first_plan();
+    pace.choose_structure({14000, 1150, 8e-7, true, 6e-8, 4e-8}, plan);
+    plan.edge_spp = 600;
+    const auto wants = [&](double error, double standard_error, double path_noise) {
+        return pace.wants_paths({0.05, 7000, {error, standard_error, path_noise}, {}}, plan);
+    };
+    CHECK(wants(1e-4, 1e-5, 1e-2));
+    CHECK_FALSE(wants(1e-4, 1e-5, 1));     // 200 paths leave more than records do
+    CHECK_FALSE(wants(1e-4, 1e-4, 1e-2));  // it may be noise
+    CHECK_FALSE(wants(1e-5, 1e-6, 1e-2));  // samples that are lost cost more
+    CHECK_FALSE(wants(0, 0, 0));           // nothing is known
+    plan.edge_spp = 20;
+    CHECK_FALSE(wants(1, 1e-5, 1e-2));  // too few to have a third of them
+}
+
+TEST_CASE("the error that a paced frame expects is about what it has", "[auto]") {
+    for (const char* name : {"cornell_sphere", "corridor", "failures/f16_soft_shadow"}) {
+        INFO(name);
+        const Scene scene = load_scene(kScenes + name + ".json");
+        RenderSettings settings;
+        settings.size = {128, 128};
+        settings.max_depth = 2;
+        settings.planes = Planes{Plane::radiance};
+        PilotFindings found;
+        found.pixels = 128.0 * 128.0;
+        Pace pace(0.2, default_thread_count(), found);
+        const StagedRender made =
+            render_in_stages(scene, settings, {Pace::first_plan(), &pace}, {});
+        REQUIRE(made.expected_error.has_value());
+        const double error =
+            test::db(made.render.frame.radiance, test::paths(scene, settings, 4096));
+        const double expected = -10 * std::log10(*made.expected_error);
+        CHECK(expected > error - 9);
+        CHECK(expected < error + 9);
+    }
 }
 
 TEST_CASE("a machine that is busy is given less to do", "[auto]") {

@@ -17,6 +17,64 @@ TEST_CASE("a wide half-shadow is found by one sample a pixel", "[surface_records
     CHECK(db(made.frame.radiance, paths(scene, settings, 1024)) > 42);
 }
 
+TEST_CASE("half-shadow without further samples is smooth, and hard edges stay hard",
+          "[surface_records]") {
+    // One sample for each needy pixel on average: most get none.
+    const SurfaceRecordsPlan plan{1, 1, 16, 0, 64, 64, 1.0, 0.15};
+    RenderSettings settings = small_settings({256, 256}, 1);
+    settings.max_depth = 1;
+    const auto quality = [&](const std::string& name) {
+        const Scene scene = repository_scene("failures/" + name);
+        return db(records(scene, settings, plan).frame.radiance, paths(scene, settings, 256));
+    };
+    CHECK(quality("f16_soft_shadow") > 32);  // 17 as the samples are
+    CHECK(quality("f16_hard_shadow") > 29);  // 30 so
+    settings.size = {200, 90};
+    const Scene many = repository_scene("corridor");
+    Image threads[2];
+    for (int i = 0; i < 2; ++i) {
+        settings.threads = 1 + 6 * i;
+        threads[i] = records(many, settings, plan).frame.radiance;
+    }
+    CHECK(threads[0] == threads[1]);
+    CHECK(db(threads[0], paths(many, settings, 256)) > 26.8);  // 25.6 so
+}
+
+namespace {
+
+/// Bars and tiles a tenth of a pixel above a wall, cells down to single pixels.
+constexpr SurfaceRecordsPlan kContactPlan{16, 256, 4, 2, 1024, 2048, 1.0, 0.2};
+
+}  // namespace
+
+TEST_CASE("fits between records swing no farther than their records do", "[surface_records]") {
+    const Scene scene = repository_scene("failures/f10_odd_size");
+    RenderSettings settings = small_settings({192, 192}, 1);
+    settings.max_depth = 3;
+    settings.seed = GENERATE(1u, 2u);
+    const Render made = records(scene, settings, kContactPlan);
+    float brightest = 0;
+    for (int y = 0; y < 192; ++y) {
+        for (int x = 0; x < 192; ++x) brightest = std::max(brightest, made.frame.radiance(x, y).z);
+    }
+    CHECK(brightest < 0.85f);  // the sky is 1, the blue of the wall 0.8
+}
+
+TEST_CASE("paths of their own show pixels at edges the finest contacts", "[surface_records]") {
+    const Scene scene = repository_scene("failures/f09_thin_bar");
+    RenderSettings settings = small_settings({192, 192}, 1);
+    settings.max_depth = 3;
+    const Image reference = paths(scene, settings, 4096);
+    SurfaceRecordsPlan plan = kContactPlan;
+    const double by_records = db(records(scene, settings, plan).frame.radiance, reference);
+    plan.edge_light = EdgeLight::paths;
+    settings.threads = 1;
+    const Render made = records(scene, settings, plan);
+    CHECK(db(made.frame.radiance, reference) > by_records + 4);
+    settings.threads = 7;
+    CHECK(made.frame.radiance == records(scene, settings, plan).frame.radiance);
+}
+
 TEST_CASE("records right beside something else do not darken all that is around them",
           "[surface_records]") {
     // A bar a tenth of a pixel above a wall: four pixels off, its shadow is gone.
