@@ -223,7 +223,8 @@ class Band {
     void choose_edges() {
         choose_edge_spp();
         ErrorFindings findings = find_errors();
-        if (context_.pace->wants_paths(findings, plan_)) {
+        // Of lamps paths know by chance what clusters know exactly.
+        if (tracer_.task.light_count == 0 && context_.pace->wants_paths(findings, plan_)) {
             plan_.edge_light = EdgeLight::paths;
             choose_edge_spp();
             findings.samples = needed_->error(needy_, plan_.edge_spp, plan_.pilot_spp);

@@ -314,7 +314,7 @@ TEST_CASE("the error that a paced frame expects is about what it has", "[auto]")
             render_in_stages(scene, settings, {Pace::first_plan(), &pace}, {});
         REQUIRE(made.expected_error.has_value());
         const double error =
-            test::db(made.render.frame.radiance, test::paths(scene, settings, 4096));
+            test::db(made.render.frame.radiance, test::paths(scene, settings, 1024));
         const double expected = -10 * std::log10(*made.expected_error);
         CHECK(expected > error - 9);
         CHECK(expected < error + 9);

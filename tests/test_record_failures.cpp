@@ -64,7 +64,7 @@ TEST_CASE("paths of their own show pixels at edges the finest contacts", "[surfa
     const Scene scene = repository_scene("failures/f09_thin_bar");
     RenderSettings settings = small_settings({192, 192}, 1);
     settings.max_depth = 3;
-    const Image reference = paths(scene, settings, 4096);
+    const Image reference = paths(scene, settings, 1024);
     SurfaceRecordsPlan plan = kContactPlan;
     const double by_records = db(records(scene, settings, plan).frame.radiance, reference);
     plan.edge_light = EdgeLight::paths;
