@@ -103,11 +103,16 @@ std::map<std::string, std::vector<Point>> points_by_scene(const ReportData& data
     return points;
 }
 
+/// One of full resolution bounds nothing.
+bool is_ceiling(const GroupSummary& group) {
+    return group.method == "blocky_ceiling" && group.psnr_float_db &&
+           group.params.value("reduction", 1) > 1;
+}
+
 Axes axes_of(const ReportData& data, const std::map<std::string, std::vector<Point>>& scenes) {
     std::vector<double> times, levels;
     for (const GroupSummary& group : data.groups) {
-        if (group.method == "blocky_ceiling" && group.psnr_float_db)
-            levels.push_back(group.psnr_float_db->mean);
+        if (is_ceiling(group)) levels.push_back(group.psnr_float_db->mean);
     }
     for (const auto& [scene, points] : scenes) {
         for (const Point& point : points) {
@@ -197,8 +202,7 @@ void draw_ceilings(Grid<glm::u8vec3>& picture, const ReportData& data, const std
                    const std::pair<Axes, cv::Point>& place) {
     const auto& [axes, corner] = place;
     for (const GroupSummary& group : data.groups) {
-        if (group.method != "blocky_ceiling" || group.scene != scene || !group.psnr_float_db)
-            continue;
+        if (!is_ceiling(group) || group.scene != scene) continue;
         const double db = group.psnr_float_db->mean;
         if (db > axes.most_db || db < axes.least_db) continue;
         const int y = axes.at(axes.least_time, db, corner).y;

@@ -21,10 +21,13 @@ const charts = (() => {
 
     const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
+    /// One of full resolution bounds nothing.
+    const isCeiling = (g) => g.method === "blocky_ceiling" && g.params.reduction > 1;
+
     /// The same for all scenes, so that charts compare; at least a factor of 4 of time and 1 dB.
     function limits() {
         const times = points.map((g) => g.time_s);
-        const bounds = hidden.has("blocky_ceiling") ? [] : report.groups.filter((g) => g.method === "blocky_ceiling");
+        const bounds = hidden.has("blocky_ceiling") ? [] : report.groups.filter(isCeiling);
         const levels = ["", region].flatMap((where) => [...points, ...bounds].map((g) => level(g, where)).filter(Boolean))
             .flatMap((e) => [e.mean, e.low ?? e.mean, e.high ?? e.mean]);
         const centre = Math.sqrt(Math.min(...times) * Math.max(...times));
@@ -152,7 +155,7 @@ const charts = (() => {
         if (hidden.has("blocky_ceiling")) return;
         let lowest = Infinity; // where the label below stands
         const ceilings = report.groups
-            .filter((g) => g.method === "blocky_ceiling" && g.scene === chart.canvas.dataset.scene && level(g, regionOf(chart.canvas)))
+            .filter((g) => isCeiling(g) && g.scene === chart.canvas.dataset.scene && level(g, regionOf(chart.canvas)))
             .map((g) => ({ factor: g.params.reduction, db: level(g, regionOf(chart.canvas)).mean }))
             .sort((a, b) => a.db - b.db);
         for (const g of ceilings) {
