@@ -39,6 +39,11 @@ struct FieldRow {
     }
 };
 
+/// Of pixel x >= -kMostReach in a FieldRow.
+std::size_t index_of(int x) {
+    return static_cast<std::size_t>(x) + std::size_t{kMostReach};
+}
+
 /// Sums over the windows of pixels side by side.
 struct LaneSums {
     alignas(64) float count[kLanes];
@@ -46,8 +51,14 @@ struct LaneSums {
     float differences[kLanes], pairs[kLanes];
 };
 
-VECINO_CLONES void add_pixels(const FieldRow& own, const FieldRow& row, std::size_t at,
-                              std::size_t from, LaneSums& sums) {
+/// Where pixels are in their row, and those that are added to them in theirs.
+struct Places {
+    std::size_t at, from;
+};
+
+VECINO_CLONES void add_pixels(const FieldRow& own, const FieldRow& row, const Places& places,
+                              LaneSums& sums) {
+    const std::size_t at = places.at, from = places.from;
     for (std::size_t i = 0; i < kLanes; ++i) {
         const float cosine = own.normal[0].data()[at + i] * row.normal[0].data()[from + i] +
                              own.normal[1].data()[at + i] * row.normal[1].data()[from + i] +
@@ -117,7 +128,7 @@ class LightField {
         const int lane = x % kLanes;
         const float samples = picks_ ? block.shadow_count[lane] : lights[light_].open[lane];
         if (block.object[lane] < 0 || !(samples > 0) || clusters_.list(x, y) != nullptr) return;
-        const auto i = static_cast<std::size_t>(x + kMostReach);
+        const auto i = index_of(x);
         row.object[i] = block.object[lane];
         for (int c = 0; c < 3; ++c) row.normal[c][i] = block.first_normal[c][lane];
         if (picks_) {
@@ -160,7 +171,7 @@ class RowSmoother {
             }
             const auto i = static_cast<std::size_t>(x % kLanes);
             const FieldRow& own = row(y);
-            const auto at = static_cast<std::size_t>(x + kMostReach);
+            const auto at = index_of(x);
             if (own.object[at] == kNothing) continue;
             const float share = grain(sums, i);
             if (!(share > 0)) continue;
@@ -187,11 +198,11 @@ class RowSmoother {
 
     LaneSums sums_of(int y, int x) {
         LaneSums sums{};
-        const auto at = static_cast<std::size_t>(x + kMostReach);
+        const auto at = index_of(x);
         for (int dy = -reach_; dy <= reach_; ++dy) {
-            for (int dx = -reach_; dx <= reach_; ++dx)
-                add_pixels(row(y), row(y + dy), at, static_cast<std::size_t>(x + kMostReach + dx),
-                           sums);
+            for (int dx = -reach_; dx <= reach_; ++dx) {
+                add_pixels(row(y), row(y + dy), {at, index_of(x + dx)}, sums);
+            }
         }
         return sums;
     }
@@ -209,11 +220,12 @@ struct OpenPixels {
 };
 
 /// Those that get no further samples.
-OpenPixels open_pixels(RowRange rows, const NeedyRows& needy, int pilot_spp) {
-    OpenPixels open{rows, std::vector<std::vector<int>>(needy.size())};
+OpenPixels open_pixels(const GivenSamples& given) {
+    const NeedyRows& needy = given.needy;
+    OpenPixels open{given.rows, std::vector<std::vector<int>>(needy.size())};
     for (std::size_t r = 0; r < needy.size(); ++r) {
         for (const NeedyPixel& pixel : needy[r]) {
-            const bool sampled = pixel.samples > static_cast<std::uint32_t>(pilot_spp);
+            const bool sampled = pixel.samples > static_cast<std::uint32_t>(given.pilot_spp);
             if (!sampled && (pixel.needs & kNeedsShadow) != 0) open.x[r].push_back(pixel.x);
         }
     }
@@ -246,21 +258,22 @@ void store_pixel(const LightField& field, const Smoothed& pixel, int y, PixelClu
 
 }  // namespace
 
-void smooth_half_shadow(const RecordTracer& tracer, RowRange rows, const NeedyRows& needy,
-                        int pilot_spp, PixelClusters& clusters) {
-    const OpenPixels open = open_pixels(rows, needy, pilot_spp);
+void smooth_half_shadow(const RecordTracer& tracer, const GivenSamples& given,
+                        PixelClusters& clusters) {
+    const OpenPixels open = open_pixels(given);
     if (std::ranges::all_of(open.x, [](const auto& row) { return row.empty(); })) return;
     const bool picks = tracer.task.light_count > static_cast<std::uint32_t>(kMostExactLights);
     const int lights = picks ? 1 : static_cast<int>(tracer.task.light_count);
     // The fewer samples, the larger the window.
-    const int reach = pilot_spp > 1 ? kMostReach - 1 : kMostReach;
+    const int reach = given.pilot_spp > 1 ? kMostReach - 1 : kMostReach;
     for (int l = 0; l < lights; ++l) {
         const LightField field(clusters, l, picks);
         const SmoothedRows smoothed = smooth(field, open, reach, tracer.threads);
         // Only now: pixels are smoothed by what their neighbours saw themselves.
         for_each_block(smoothed.size(), 1, tracer.threads, [&](BlockRange block) {
             for (const Smoothed& pixel : smoothed[block.begin])
-                store_pixel(field, pixel, rows.begin + static_cast<int>(block.begin), clusters);
+                store_pixel(field, pixel, open.rows.begin + static_cast<int>(block.begin),
+                            clusters);
         });
     }
 }

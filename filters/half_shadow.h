@@ -8,10 +8,17 @@
 
 namespace vecino {
 
-/// Of needy pixels of rows that get no samples beyond pilot_spp and lie on one surface alone: what
-/// is in sight of the light becomes a mean over a window, where pixels differ by noise; at a hard
-/// edge they differ in order, and keep their own. Reads first samples alone.
-void smooth_half_shadow(const RecordTracer& tracer, RowRange rows, const NeedyRows& needy,
-                        int pilot_spp, PixelClusters& clusters);
+/// What samples there are of needy pixels.
+struct GivenSamples {
+    RowRange rows;
+    const NeedyRows& needy;  ///< of these
+    int pilot_spp;           ///< what they have that get no others
+};
+
+/// Of needy pixels that get no further samples and lie on one surface alone: what is in sight of
+/// the light becomes a mean over a window, where pixels differ by noise; at a hard edge they differ
+/// in order, and keep their own. Reads first samples alone.
+void smooth_half_shadow(const RecordTracer& tracer, const GivenSamples& given,
+                        PixelClusters& clusters);
 
 }  // namespace vecino

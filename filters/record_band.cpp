@@ -55,7 +55,7 @@ class Band {
         if (plan_.edge_spp > 0) needed_->give(plan_.edge_spp, needy_);
         context_.checkpoint();
         timed(times.samples_s, [&] {
-            smooth_half_shadow(tracer_, rows_, needy_, plan_.pilot_spp, clusters_);
+            smooth_half_shadow(tracer_, {rows_, needy_, plan_.pilot_spp}, clusters_);
             add_samples();
         });
         context_.checkpoint();
