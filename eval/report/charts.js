@@ -29,7 +29,7 @@ const charts = (() => {
         const times = points.map((g) => g.time_s);
         const bounds = hidden.has("blocky_ceiling") ? [] : report.groups.filter(isCeiling);
         const levels = ["", region].flatMap((where) => [...points, ...bounds].map((g) => level(g, where)).filter(Boolean))
-            .flatMap((e) => [e.mean, e.low ?? e.mean, e.high ?? e.mean]);
+            .flatMap((e) => [e.mean, e.low ?? e.mean, Math.min(e.high ?? e.mean, e.mean + 10)]); // it may be open above
         const centre = Math.sqrt(Math.min(...times) * Math.max(...times));
         const least = Math.min(Math.min(...times) / 1.25, centre / 2);
         const most = Math.max(Math.max(...times) * 1.25, centre * 2);
