@@ -42,7 +42,7 @@ constexpr Structure kStructures[] = {
 constexpr double kPathsPerSample[] = {1, 2, 4, 8, 16, 32};
 
 // Records of fewer paths are not worth their place.
-constexpr int kFewestPaths = 16, kFewestEdgeSpp = 4;
+constexpr int kFewestPaths = 16, kFewestEdgeSpp = 2;
 
 SurfaceRecordsPlan plan_by(const Structure& structure, double edge_spp, double paths) {
     // First samples find what the others are for: the more of these, the more of them.
@@ -72,6 +72,30 @@ SurfaceRecordsPlan filled(const PilotFindings& found, const CostRates& rates,
     return plan_of(low);
 }
 
+/// Of a needy pixel, in samples.
+double usual_edge_work(int edge_spp) {
+    // With few samples they go to the neediest, so many at least to each.
+    const double sampled = std::min(1.0 * edge_spp / kLeastEdgeSpp, 1.0);
+    return sampled * (std::max(edge_spp, kLeastEdgeSpp) + kEdgeStart) + kSmoothingWork;
+}
+
+/// Between two points of a curve, in powers; beyond the last as samples go.
+EdgePoint point_at(const EdgeCurve& curve, double edge_spp) {
+    const EdgePoint& last = curve.back();
+    if (edge_spp >= last.edge_spp) {
+        const double times = edge_spp / last.edge_spp;
+        return {edge_spp, last.work * times, last.error * std::pow(times, -kEdgeSlope)};
+    }
+    if (edge_spp <= curve.front().edge_spp) return curve.front();
+    const auto next = std::ranges::upper_bound(curve, edge_spp, {}, &EdgePoint::edge_spp);
+    const EdgePoint &low = *(next - 1), &high = *next;
+    const double part = std::log(edge_spp / low.edge_spp) / std::log(high.edge_spp / low.edge_spp);
+    const auto between = [part](double a, double b) {
+        return a > 0 && b > 0 ? a * std::pow(b / a, part) : a + part * (b - a);
+    };
+    return {edge_spp, between(low.work, high.work), between(low.error, high.error)};
+}
+
 }  // namespace
 
 CostRates nominal_rates(double rays_per_path) {
@@ -91,7 +115,8 @@ double surface_records_cost(const PilotFindings& found, const CostRates& rates,
     const double refined = kRefinedShare * base * plan.levels;
     const double paths = base * (plan.record_paths + kRecordStart) +
                          refined * (plan.refined_record_paths + kRecordStart);
-    const double edges = plan.edge_spp == 0 ? 0 : plan.edge_spp + kEdgeStart;
+    const double edges = found.edges.empty() ? usual_edge_work(plan.edge_spp)
+                                             : point_at(found.edges, plan.edge_spp).work;
     return found.pixels * ((plan.pilot_spp + kPilotStart) * rates.first_sample_s + rates.pixel_s) +
            found.needy_pixels * edges * rates.edge_sample_s + paths * rates.record_path_s +
            (base + refined) * rates.record_s;
@@ -99,7 +124,7 @@ double surface_records_cost(const PilotFindings& found, const CostRates& rates,
 
 double edge_noise_share(const SurfaceRecordsPlan& plan) {
     const double samples = std::max(plan.edge_spp + plan.pilot_spp, 1);
-    return std::pow(128.0 / samples, kEdgeSlope);
+    return std::pow(kComparedEdgeSpp / samples, kEdgeSlope);
 }
 
 double record_noise_share(const SurfaceRecordsPlan& plan) {
@@ -113,8 +138,9 @@ double surface_records_error(const PilotFindings& found, const SurfaceRecordsPla
     const double halvings = std::log2(8.0 / plan.cell);
     const double bias = from.bias_at_8 * std::pow(kBiasPerHalving, -halvings) *
                         std::pow(kBiasPerLevel, -plan.levels);
-    return from.edge_noise * edge_noise_share(plan) + from.record_noise * record_noise_share(plan) +
-           bias + from.unexplained;
+    const double edges = found.edges.empty() ? from.edge_noise * edge_noise_share(plan)
+                                             : point_at(found.edges, plan.edge_spp).error;
+    return edges + from.record_noise * record_noise_share(plan) + bias + from.unexplained;
 }
 
 Schedule plan_path(const PilotFindings& found, const CostRates& rates, double seconds) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/grid.h"
 #include "filters/surface_records_stages.h"
@@ -29,7 +30,7 @@ CostRates nominal_rates(double rays_per_path);
 constexpr double kRefinedShare = 0.75;
 
 /// Its bias falls so much with cells of half the side.
-constexpr double kBiasPerHalving = 8;
+constexpr double kBiasPerHalving = 5.3;
 
 /// Its errors fall with samples and paths to these powers: Sobol points.
 constexpr double kEdgeSlope = 1.3, kRecordSlope = 1.25;
@@ -43,9 +44,12 @@ struct PathErrors {
     double slope = 1;  ///< error falls as spp to the power of -slope
 };
 
+/// Of needy pixels, what their noise is held against.
+constexpr int kComparedEdgeSpp = 128;
+
 /// What makes up the error of surface_records.
 struct RecordErrors {
-    double edge_noise = 0;    ///< by 128 samples of needy pixels
+    double edge_noise = 0;    ///< by kComparedEdgeSpp samples of needy pixels
     double record_noise = 0;  ///< by records of 512 paths
     double bias_at_8 = 0;     ///< by cells of 8 pixels
     double unexplained = 0;   ///< against traced paths: none of these
@@ -62,6 +66,15 @@ constexpr double kUsualNeedy = 0.06;
 double edge_noise_share(const SurfaceRecordsPlan& plan);
 double record_noise_share(const SurfaceRecordsPlan& plan);
 
+/// What samples of needy pixels take and leave, by their mean number: of this frame, where it is
+/// known; rising.
+struct EdgePoint {
+    double edge_spp;
+    double work;   ///< of a needy pixel on average, in samples, with what it begins with
+    double error;  ///< of the frame
+};
+using EdgeCurve = std::vector<EdgePoint>;
+
 struct PilotFindings {
     double pixels = 0;               ///< of the frame that is wanted
     int lanes = 16;                  ///< samples of a packet: path tracing takes as long for fewer
@@ -71,6 +84,7 @@ struct PilotFindings {
     bool has_records_method = true;  ///< surface_records can render with these settings
     std::optional<PathErrors> path;  ///< none: there was no time to find out
     std::optional<RecordErrors> records;
+    EdgeCurve edges;  ///< empty: as of edge_noise
 };
 
 /// Which method with which numbers, and what is expected of it.

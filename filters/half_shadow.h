@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Half-shadow where there is no time for more samples: a few first ones see the light or do not,
-// and a mean over neighbours on the same surface is far less noisy than each.
+// Half-shadow from few samples: what is in sight of a light changes little from pixel to pixel of a
+// surface, so that those around tell more of it than a pixel's own samples.
 #pragma once
 
 #include "filters/pixel_needs.h"
@@ -20,5 +20,12 @@ struct GivenSamples {
 /// in order, and keep their own. Reads first samples alone.
 void smooth_half_shadow(const RecordTracer& tracer, const GivenSamples& given,
                         PixelClusters& clusters);
+
+/// Of all needy pixels, once further samples are stored: what is in sight of the light becomes the
+/// value of a polynomial of second order, fitted to the 7x7 pixels around (Savitzky and Golay
+/// 1964, in two dimensions; a thirteenth of the variance is left), as far as what it leaves is
+/// noise. Where neighbours differ from it alike, as along an edge, pixels keep their own.
+void fit_half_shadow(const RecordTracer& tracer, const GivenSamples& given,
+                     PixelClusters& clusters);
 
 }  // namespace vecino

@@ -2,12 +2,14 @@
 #include "filters/needed_samples.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/color.h"
 #include "core/parallel.h"
 #include "filters/records.h"
+#include "filters/surface_records_stages.h"
 
 namespace vecino {
 namespace {
@@ -71,8 +73,9 @@ class Estimator {
         if (cluster.object < 0 || task_.max_depth < 1) return means.emission;
         RecordValue records;
         rough_light(inputs_.records, {x, y, cluster.object, means.position, means.normal}, records);
-        const glm::vec3 indirect(records[0] + records[3], records[1] + records[4],
-                                 records[2] + records[5]);
+        const glm::vec3 indirect =
+            inputs_.ambient +
+            glm::vec3(records[0] + records[3], records[1] + records[4], records[2] + records[5]);
         return means.emission + means.albedo * (direct_light(task_, cluster) + indirect);
     }
 
@@ -101,6 +104,8 @@ float shown_slope(float light) {
     const float slope = srgb_slope(light);
     return light > 1.0f ? slope / (light * light) : slope;
 }
+
+using PixelSpread = NeededSamples::PixelSpread;
 
 /// Standard deviation of one sample of a pixel in sRGB, from the pixel and its needy neighbours.
 class Spread {
@@ -131,7 +136,10 @@ class Spread {
         picked_samples_ += other.samples;
     }
 
-    [[nodiscard]] float srgb() const {
+    [[nodiscard]] PixelSpread of_one_sample() const {
+        // Of it, where fit_half_shadow() makes use of the pixels around.
+        constexpr float kFitted = 0.4f;
+        const bool fitted = (needs_ & kWideShadow) != 0 && (needs_ & kNeedsCoverage) == 0;
         const glm::vec3 mean = mean_ / weight_;
         glm::vec3 variance(0.0f);
         if ((needs_ & kNeedsCoverage) != 0)
@@ -146,11 +154,13 @@ class Spread {
                 glm::vec3(std::max(picked_square_ / picked_samples_ - picked * picked, 0.0f));
         }
         float sum = 0;
+        bool clipped = false;
         for (int c = 0; c < 3; ++c) {
+            clipped |= (needs_ & kNeedsCoverage) != 0 && mean[c] > 1.0f;
             const float slope = shown_slope(mean[c]);
             sum += variance[c] * slope * slope;
         }
-        return std::sqrt(sum);
+        return {std::sqrt(sum) * (fitted ? kFitted : 1.0f), fitted, clipped};
     }
 
   private:
@@ -165,7 +175,7 @@ class Spread {
 };
 
 using EstimateRow = std::vector<PixelEstimate>;
-using SpreadRows = std::vector<std::vector<float>>;
+using SpreadRows = std::vector<std::vector<PixelSpread>>;
 
 /// A row of needy pixels and what is known of them.
 struct KnownRow {
@@ -190,10 +200,10 @@ class SpreadFinder {
     }
 
     /// Of row number r, the next one.
-    std::vector<float> next(std::size_t r) {
+    std::vector<PixelSpread> next(std::size_t r) {
         know(r + 1, known_[2]);
         for (KnownRow& row : known_) row.first = 0;
-        std::vector<float> spreads;
+        std::vector<PixelSpread> spreads;
         spreads.reserve(needy_[r].size());
         for (std::size_t i = 0; i < needy_[r].size(); ++i) spreads.push_back(spread(i));
         std::rotate(std::begin(known_), std::begin(known_) + 1, std::end(known_));
@@ -211,7 +221,7 @@ class SpreadFinder {
         }
     }
 
-    float spread(std::size_t i) {
+    PixelSpread spread(std::size_t i) {
         const NeedyPixel& pixel = (*known_[1].needy)[i];
         Spread spread(known_[1].estimates[i], pixel.needs, lights_, picks_);
         for (KnownRow& row : known_) {
@@ -222,7 +232,7 @@ class SpreadFinder {
                 if (&needy[k] != &pixel) spread.add_neighbour(row.estimates[k]);
             }
         }
-        return spread.srgb();
+        return spread.of_one_sample();
     }
 
     Estimator estimator_;
@@ -247,7 +257,7 @@ double mean_of(const SpreadRows& spreads) {
     double sum = 0;
     std::size_t count = 0;
     for (const auto& row : spreads) {
-        for (const float value : row) sum += static_cast<double>(value);
+        for (const PixelSpread& spread : row) sum += static_cast<double>(spread.srgb);
         count += row.size();
     }
     return count > 0 ? sum / static_cast<double>(count) : 0.0;
@@ -258,34 +268,103 @@ std::uint32_t power_of_two_near(float samples) {
     return 1u << static_cast<unsigned>(std::lround(std::log2(samples)));
 }
 
+/// Who gets how many.
+class Share {
+  public:
+    /// mean_spread: of needy pixels, > 0.
+    Share(double mean_spread, int edge_spp, int pilot_spp)
+        : per_spread_(static_cast<float>(edge_spp) / static_cast<float>(mean_spread)),
+          most_(kLeastSamples * static_cast<float>(std::max(edge_spp, 1))),
+          fewest_of_fitted_(fewest_wanted(pilot_spp)) {
+        constexpr float kOfOthers = 0.75f;
+        const float few = kLeastSamples / std::max(static_cast<float>(edge_spp), kLeastSamples);
+        fewest_ = kOfOthers * fewest_of_fitted_ * few * few;
+    }
+
+    [[nodiscard]] std::uint32_t of(const PixelSpread& spread) const {
+        const float wanted = spread.srgb * per_spread_;
+        const float fewest = spread.is_fitted ? fewest_of_fitted_ : fewest_;
+        if (wanted < fewest && !spread.is_clipped) return 0;
+        return power_of_two_near(std::clamp(wanted, kLeastSamples, most_));
+    }
+
+  private:
+    /// A pixel that wants fewer is left with its first samples: the least that it could get, with
+    /// what a pixel takes to begin with, take more of the error elsewhere. The fewer first ones,
+    /// the more.
+    static float fewest_wanted(int pilot_spp) {
+        constexpr float kOfOne = 4, kPower = 0.75f;
+        return std::min(kOfOne * std::pow(static_cast<float>(pilot_spp), kPower), kLeastSamples);
+    }
+
+    float per_spread_, most_;
+    float fewest_of_fitted_;
+    // What is told of a pixel's error by a few samples is often too little: the more samples there
+    // are, the less is left to that. Only of a wide half-shadow those around tell what they do not.
+    float fewest_;
+};
+
+/// Of a pixel's error, what its samples leave: Sobol points.
+class NoiseLeft {
+  public:
+    explicit NoiseLeft(int pilot_spp) : of_pilot_(after(pilot_spp)) {
+        for (int k = 0; k < kPowers; ++k) by_power_[k] = after(std::exp2(k));
+    }
+
+    /// samples: a power of two.
+    [[nodiscard]] double of(std::uint32_t samples) const {
+        return by_power_[std::countr_zero(samples)];
+    }
+    /// Of first samples alone: half-shadow is smoothed.
+    [[nodiscard]] double of_pilot(std::uint8_t needs) const {
+        constexpr double kSmoothed = 0.2;
+        return of_pilot_ * ((needs & kNeedsCoverage) != 0 ? 1 : kSmoothed);
+    }
+
+  private:
+    static constexpr int kPowers = 32;
+    static double after(double samples) {
+        constexpr double kSlope = 1.4;
+        return std::pow(samples, -kSlope);
+    }
+
+    double of_pilot_;
+    double by_power_[kPowers];
+};
+
 }  // namespace
 
 NeededSamples::NeededSamples(const NeedInputs& inputs, RowRange rows, const NeedyRows& needy)
-    : spreads_(spread_all(inputs, rows, needy)), mean_(mean_of(spreads_)) {}
+    : spreads_(spread_all(inputs, rows, needy)),
+      mean_(mean_of(spreads_)),
+      pilot_spp_(inputs.pilot_spp) {}
 
 std::uint32_t NeededSamples::samples(std::size_t row, std::size_t i, int edge_spp) const {
-    if (!(mean_ > 0)) return 0;
-    const auto mean_samples = static_cast<float>(edge_spp);
-    const float wanted = spreads_[row][i] * mean_samples / static_cast<float>(mean_);
-    // With so few, a packet for each pixel is more than there is: the neediest come first.
-    if (mean_samples < kLeastSamples && wanted < 0.5f * kLeastSamples) return 0;
-    return power_of_two_near(
-        std::clamp(wanted, kLeastSamples, std::max(kLeastSamples, kLeastSamples * mean_samples)));
+    return mean_ > 0 ? Share(mean_, edge_spp, pilot_spp_).of(spreads_[row][i]) : 0;
 }
 
-double NeededSamples::error(const NeedyRows& needy, int edge_spp, int pilot_spp) const {
-    constexpr double kSlope = 1.4;     // of one pixel's error, by Sobol points
-    constexpr double kSmoothed = 0.1;  // of it is left by smooth_half_shadow()
-    double sum = 0;
+NeededSamples::Outlook NeededSamples::outlook(const NeedyRows& needy,
+                                              const Question& question) const {
+    Outlook out;
+    if (!(mean_ > 0)) return out;
+    const Share share(mean_, question.edge_spp, question.pilot_spp);
+    const NoiseLeft noise(question.pilot_spp);
+    const auto pilot = static_cast<std::uint32_t>(question.pilot_spp);
+    std::size_t skipped = 0;
     for (std::size_t r = 0; r < spreads_.size(); ++r) {
-        for (std::size_t i = 0; i < spreads_[r].size(); ++i) {
-            const double of_one = std::pow(static_cast<double>(spreads_[r][i]), 2) / 3;
-            const double given = std::max<double>(samples(r, i, edge_spp), pilot_spp);
-            const bool smoothed = given <= pilot_spp && needy[r][i].needs == kNeedsShadow;
-            sum += of_one * std::pow(given, -kSlope) * (smoothed ? kSmoothed : 1.0);
+        for (; skipped < spreads_[r].size(); skipped += question.one_of) {
+            const PixelSpread& spread = spreads_[r][skipped];
+            const std::uint8_t needs = needy[r][skipped].needs;
+            const std::uint32_t given = share.of(spread);
+            out.error += static_cast<double>(spread.srgb * spread.srgb) / 3 *
+                         (given > pilot ? noise.of(given) : noise.of_pilot(needs));
+            if (given > pilot) out.work += given - pilot + kEdgeStart;
+            if ((needs & kNeedsShadow) != 0) out.work += kSmoothingWork;
+            ++out.pixels;
         }
+        skipped -= spreads_[r].size();
     }
-    return sum;
+    return out;
 }
 
 void NeededSamples::give(int edge_spp, NeedyRows& needy) const {

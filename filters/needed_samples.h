@@ -11,14 +11,13 @@
 
 namespace vecino {
 
-/// Of a pixel that gets any. Fewer save little time and cost much.
-constexpr int kLeastEdgeSpp = 16;
-
 /// What decides.
 struct NeedInputs {
     const RecordTracer& tracer;
     const PixelClusters& clusters;
-    const RecordMap& records;
+    int pilot_spp;             ///< what pixels have that get no others
+    const RecordMap& records;  ///< empty: they are not there yet
+    glm::vec3 ambient{0.0f};   ///< light over pi that is then taken for theirs
 };
 
 class NeededSamples {
@@ -32,13 +31,31 @@ class NeededSamples {
     /// What give() gives pixel number i of a row.
     [[nodiscard]] std::uint32_t samples(std::size_t row, std::size_t i, int edge_spp) const;
 
-    /// What is left of the error then: a sum over needy pixels of mean squares in sRGB. needy: as
-    /// before. Of pilot_spp samples is what gets no others.
-    [[nodiscard]] double error(const NeedyRows& needy, int edge_spp, int pilot_spp) const;
+    /// What comes of that, were there so many first samples: sums over needy pixels, or over one of
+    /// every so many. needy: as before.
+    struct Outlook {
+        double error = 0;   ///< that is left: mean squares in sRGB
+        double work = 0;    ///< samples, with what a pixel takes to begin with
+        double pixels = 0;  ///< these are sums of
+    };
+    struct Question {
+        int edge_spp, pilot_spp;
+        std::size_t one_of = 1;
+    };
+    [[nodiscard]] Outlook outlook(const NeedyRows& needy, const Question& question) const;
+
+    /// Of one sample of a pixel.
+    struct PixelSpread {
+        float srgb;      ///< standard deviation
+        bool is_fitted;  ///< less what fit_half_shadow() makes of the pixels around
+        bool
+            is_clipped;  ///< a share of it may be too bright to be shown: by one sample all or none
+    };
 
   private:
-    std::vector<std::vector<float>> spreads_;  ///< standard deviation of one sample, sRGB
+    std::vector<std::vector<PixelSpread>> spreads_;
     double mean_;
+    int pilot_spp_;
 };
 
 }  // namespace vecino

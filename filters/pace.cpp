@@ -10,7 +10,8 @@ namespace {
 
 // Of a frame's time: more first samples than this leave too little for what they find.
 constexpr double kPilotShare = 0.2;
-constexpr int kMostPilotSpp = 32;
+// Of what is left, for more of them where they are seen to pay.
+constexpr double kMostPilotShare = 0.6;
 
 // Of what is left, kept back: clocks and other programs are not exact.
 constexpr double kReserve = 0.01;
@@ -84,7 +85,9 @@ double Pace::typical(const Trial& trial) const {
     return 0.5 * (std::max(seconds[0], more[0]) + std::min(seconds[1], more[1]));
 }
 
-void Pace::take_stage(double work_s, double seconds) {
+void Pace::take_pilot(double work_s, double seconds, double look_s) {
+    pilot_s_ = seconds;
+    look_s_ = look_s;
     constexpr double kMost = 16;
     // What starts a stage is much of a short one.
     constexpr double kShort_s = 0.03, kMostOfShort = 1.25;
@@ -92,10 +95,11 @@ void Pace::take_stage(double work_s, double seconds) {
     if (work_s > 0) slowness_ = std::clamp(seconds * threads_ / work_s, 0.5, most);
 }
 
-void Pace::choose_pilot(double sample_s, SurfaceRecordsPlan& plan) {
-    const double all_s = found_.pixels * sample_s * per_work_s();
+void Pace::choose_pilot(const PilotCost& cost, SurfaceRecordsPlan& plan) {
+    pilot_cost_ = cost;
+    const auto frame_s = [&](int spp) { return found_.pixels * cost.of(spp) * per_work_s(); };
     plan.pilot_spp = 1;
-    while (plan.pilot_spp < kMostPilotSpp && 2 * plan.pilot_spp * all_s <= kPilotShare * left_s())
+    while (plan.pilot_spp < kMostPilotSpp && frame_s(2 * plan.pilot_spp) <= kPilotShare * left_s())
         plan.pilot_spp *= 2;
 }
 
@@ -105,33 +109,64 @@ void Pace::take_records(const PaceFindings& here) {
     constexpr double kLeast = 0.01;
     errors.record_noise = std::max(here.record_noise, kLeast * kUsualErrors.record_noise);
     // Where cells hold several surfaces, each has fewer records to be fitted to.
-    constexpr double kUsualExcess = 0.2, kMostTimes = 10;
-    errors.bias_at_8 *= std::clamp((here.surfaces - 1) / kUsualExcess, 1.0, kMostTimes);
+    constexpr double kUsualExcess = 0.2, kPower = 1.4, kMostTimes = 10;
+    const double excess = std::max((here.surfaces - 1) / kUsualExcess, 1.0);
+    errors.bias_at_8 *= std::min(std::pow(excess, kPower), kMostTimes);
     // Light that is the same all over, as of a sky, has no noise; it is wrong where it is hidden.
     if (!here.has_record_light) errors.bias_at_8 *= kLeast;
+}
+
+double Pace::pilot_again_s(int from_spp, int to_spp) const {
+    if (to_spp == from_spp) return 0;
+    return look_s_ + pilot_s_ * pilot_cost_.of(to_spp) / pilot_cost_.of(from_spp);
+}
+
+Schedule Pace::best_schedule(const PaceFindings& here, int pilot_spp) {
+    constexpr double kWorthwhile = 0.85;  // of the error
+    const auto take_edges = [&](const EdgeCurve& edges) {
+        found_.edges = edges;
+        for (EdgePoint& point : found_.edges) point.error /= needy_density_;
+    };
+    const auto schedule = [&](const EdgeCurve& edges, double seconds) {
+        take_edges(edges);
+        return plan_surface_records(found_, rates_, seconds);
+    };
+    const EdgeCurve* best_edges = here.edges.empty() ? nullptr : &here.edges.front().second;
+    Schedule best = schedule(best_edges != nullptr ? *best_edges : EdgeCurve{}, left_s());
+    best.plan.pilot_spp = pilot_spp;
+    for (std::size_t i = 1; i < here.edges.size(); ++i) {
+        const auto& [first_samples, edges] = here.edges[i];
+        const double again_s = pilot_again_s(pilot_spp, first_samples);
+        const double seconds = left_s() - again_s;
+        if (again_s > kMostPilotShare * left_s()) break;
+        Schedule made = schedule(edges, seconds);
+        made.plan.pilot_spp = first_samples;
+        const bool is_better = *made.predicted_error < kWorthwhile * *best.predicted_error;
+        if (!is_better || made.predicted_s > seconds) continue;
+        best = made;
+        best_edges = &edges;
+    }
+    if (best_edges != nullptr) take_edges(*best_edges);
+    return best;
 }
 
 void Pace::choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan) {
     found_.needy_pixels = here.needy_pixels / needy_density_;
     found_.records_at_8 = here.records_at_16 * found_.record_growth / record_density_;
-    if (!found_.records) {
-        found_.records = kUsualErrors;
-        const double share = found_.needy_pixels / found_.pixels;
-        found_.records->edge_noise *= std::max(share / kUsualNeedy, 1.0);
-    }
+    if (!found_.records) found_.records = kUsualErrors;
     take_records(here);
     rates_.first_sample_s = 0;  // they are done
     rates_.record_path_s = here.path_s * per_work_s();
     rates_.edge_sample_s = here.sample_s * per_work_s();
     const int pilot_spp = plan.pilot_spp;
-    plan = plan_surface_records(found_, rates_, left_s()).plan;
-    plan.pilot_spp = pilot_spp;
+    plan = best_schedule(here, pilot_spp).plan;
     PilotFindings records = found_;
     records.pixels = records.needy_pixels = 0;
     const double records_s = surface_records_cost(records, rates_, plan);
     const double all_s = surface_records_cost(found_, rates_, plan);
-    records_from_s_ = watch_.seconds();
-    records_until_s_ = records_from_s_ + std::max(left_s(), 0.0) * records_s / all_s;
+    const double again_s = pilot_again_s(pilot_spp, plan.pilot_spp);
+    records_from_s_ = watch_.seconds() + again_s;
+    records_until_s_ = records_from_s_ + std::max(left_s() - again_s, 0.0) * records_s / all_s;
 }
 
 void Pace::choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan) {

@@ -5,7 +5,9 @@
 // like any other: a frame depends on it alone, and not on how it was found.
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/timing.h"
@@ -30,6 +32,8 @@ struct PaceFindings {
     double path_s = 0;    ///< one path of a record, on one thread
     double sample_s = 0;  ///< one further sample of a needy pixel, on one thread
     double surfaces = 1;  ///< of a cell of 16 pixels that has any
+    /// By the number of first samples: those that there are, and more.
+    std::vector<std::pair<int, EdgeCurve>> edges = {};
 };
 
 /// What is known of errors once records are there.
@@ -39,11 +43,22 @@ struct ErrorFindings {
     RecordCheck at_shared, elsewhere;
 };
 
+/// What first samples of a pixel take, on one thread.
+struct PilotCost {
+    double one_s = 0, four_s = 0;
+
+    [[nodiscard]] double of(int spp) const {
+        return one_s + (spp - 1) * std::max((four_s - one_s) / 3, 0.1 * one_s);
+    }
+};
+
 class Pace {
   public:
     /// seconds: from begin() until the frame is done, by so many threads. found: what is known of
     /// errors, and the size.
     Pace(double seconds, int threads, const PilotFindings& found);
+
+    static constexpr int kMostPilotSpp = 32;
 
     /// What a paced frame begins with; all of it but refine_tau may change.
     static SurfaceRecordsPlan first_plan() { return {1, 16, 16, 0, 64, 64, 1.0, 0.15}; }
@@ -59,12 +74,12 @@ class Pace {
     /// short.
     [[nodiscard]] double typical(const Trial& trial) const;
 
-    /// What the machine makes of its threads: a stage of so much work, by a trial, took so long.
-    void take_stage(double work_s, double seconds);
+    /// What the machine makes of its threads: first samples, so much work by a trial, took so long.
+    /// look_s: to find needy pixels by them.
+    void take_pilot(double work_s, double seconds, double look_s);
 
-    /// sample_s: one first sample of a pixel, on one thread.
-    void choose_pilot(double sample_s, SurfaceRecordsPlan& plan);
-    /// All but pilot_spp, as far as can be told.
+    void choose_pilot(const PilotCost& cost, SurfaceRecordsPlan& plan);
+    /// All that can be told. If pilot_spp changes, first samples are to be traced again.
     void choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan);
     /// Paths for the records of a level, now that they are counted and some of them timed.
     void choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan);
@@ -83,6 +98,8 @@ class Pace {
 
   private:
     void take_records(const PaceFindings& here);
+    [[nodiscard]] double pilot_again_s(int from_spp, int to_spp) const;
+    [[nodiscard]] Schedule best_schedule(const PaceFindings& here, int pilot_spp);
     /// Of the frame, for a second of one thread's work.
     [[nodiscard]] double per_work_s() const { return slowness_ / threads_; }
     [[nodiscard]] double left_s() const { return until_s_ - watch_.seconds(); }
@@ -94,6 +111,8 @@ class Pace {
     PilotFindings found_;
     CostRates rates_{};
     double until_s_;
+    PilotCost pilot_cost_;
+    double pilot_s_ = 0, look_s_ = 0;
     double records_until_s_ = 0;
     double records_from_s_ = 0;
     // Of the first band: its share of these, held against its share of the time.

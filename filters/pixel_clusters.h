@@ -60,6 +60,17 @@ class PixelClusters {
     /// Changes what is known of it; surface, first sample and first normal stay.
     void store_first(int x, int y, const Cluster& cluster);
 
+    /// Changes a sum of it: what is in sight of an emitter; or, where each sample picks one, light.
+    void store_seen(int x, int y, int light, float seen) {
+        light_at(x, y, static_cast<std::size_t>(light)).seen[x % kPilotPixels] = seen;
+    }
+    void store_picked(int x, int y, const float (&rgb)[3]) {
+        PilotLight& light = light_at(x, y, 0);
+        light.exact[x % kPilotPixels] = rgb[0];
+        light.open[x % kPilotPixels] = rgb[1];
+        light.seen[x % kPilotPixels] = rgb[2];
+    }
+
     /// Calls visit(cluster) for each of a pixel's surfaces.
     template <class Visit>
     void visit(int x, int y, const Visit& visit) const {
@@ -83,6 +94,9 @@ class PixelClusters {
     }
     [[nodiscard]] std::size_t pixel_index(int x, int y) const {
         return row(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    }
+    PilotLight& light_at(int x, int y, std::size_t light) {
+        return lights_[block_index(x, y) * light_planes_ + light];
     }
     void take_spill(const PilotSpill& spill, int x, int y);
     ClusterList& make_list(int x, int y);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/clones.h"
+#include "core/eight_lanes.h"
 
 namespace vecino {
 namespace {
@@ -12,44 +12,45 @@ constexpr int kLanes = kPilotPixels;
 constexpr float kAlbedoJump2 = 1e-3f;   ///< squared difference that counts as an edge
 constexpr float kCreaseCosine = 0.95f;  ///< between normals; below, there is an edge
 
+// As numbers, for vectors.
+constexpr std::int32_t kCoverage = kNeedsCoverage, kShadow = kNeedsShadow;
+
 VECINO_CLONES void look_at_block(const PilotBlock& block, const PilotLight* lights, int light_count,
                                  std::size_t at, LookRow& row) {
-    std::int32_t* const own = row.own.data() + at;
-    std::int32_t* const bits = row.lights.data() + at;
-    for (int i = 0; i < kLanes; ++i) {
-        row.object.data()[at + static_cast<std::size_t>(i)] = block.object[i];
-        own[i] = 0;
-        bits[i] = 0;
-    }
-    for (int c = 0; c < 3; ++c) {
-        float* const albedo = row.albedo[c].data() + at;
-        for (int i = 0; i < kLanes; ++i) {
-            albedo[i] =
-                block.albedo[c][i] * (1.0f / (block.count[i] > 1.0f ? block.count[i] : 1.0f));
+    const Floats8 none = {};
+    for (std::size_t i = 0; i < kLanes; i += 8) {
+        Floats8 count, x, y, z, value, seen, open;
+        Masks8 object, own = {}, bits = {};
+        load(block.object + i, object);
+        store(object, row.object.data() + at + i);
+        load(block.count + i, count);
+        const Floats8 share = 1.0f / (count > 1.0f ? count : none + 1.0f);
+        for (int c = 0; c < 3; ++c) {
+            load(block.albedo[c] + i, value);
+            store(value * share, row.albedo[c].data() + at + i);
         }
-    }
-    float* const normal[3] = {row.normal[0].data() + at, row.normal[1].data() + at,
-                              row.normal[2].data() + at};
-    for (int i = 0; i < kLanes; ++i) {
-        const float x = block.normal[0][i], y = block.normal[1][i], z = block.normal[2][i];
-        const float length2 = x * x + y * y + z * z;
-        const float per_length = 1.0f / __builtin_sqrtf(length2 > 1e-30f ? length2 : 1e-30f);
-        normal[0][i] = x * per_length;
-        normal[1][i] = y * per_length;
-        normal[2][i] = z * per_length;
-    }
-    if (light_count > kMostExactLights) {
-        for (int i = 0; i < kLanes; ++i) own[i] |= lights[1].exact[i] > 0.0f ? kNeedsShadow : 0;
-        return;
-    }
-    for (int l = 0; l < light_count; ++l) {
-        const PilotLight& light = lights[l];
-        for (int i = 0; i < kLanes; ++i) {
-            const bool seen = light.seen[i] > 0.0f;
-            bits[i] |= seen ? 1 << l : 0;
-            bits[i] |= light.exact[i] > 0.0f ? 256 << l : 0;
-            own[i] |= seen && light.seen[i] < light.open[i] ? kNeedsShadow : 0;
+        load(block.normal[0] + i, x);
+        load(block.normal[1] + i, y);
+        load(block.normal[2] + i, z);
+        Floats8 length2 = x * x + y * y + z * z;
+        length2 = length2 > 1e-30f ? length2 : none + 1e-30f;
+        for (int k = 0; k < 8; ++k) value[k] = 1.0f / __builtin_sqrtf(length2[k]);
+        store(x * value, row.normal[0].data() + at + i);
+        store(y * value, row.normal[1].data() + at + i);
+        store(z * value, row.normal[2].data() + at + i);
+        if (light_count > kMostExactLights) {
+            load(lights[1].exact + i, value);
+            own |= (value > 0.0f) & kShadow;
         }
+        for (int l = 0; l < light_count && light_count <= kMostExactLights; ++l) {
+            load(lights[l].seen + i, seen);
+            load(lights[l].open + i, open);
+            load(lights[l].exact + i, value);
+            bits |= ((seen > 0.0f) & (1 << l)) | ((value > 0.0f) & (256 << l));
+            own |= (seen > 0.0f) & (seen < open) & kShadow;
+        }
+        store(own, row.own.data() + at + i);
+        store(bits, row.lights.data() + at + i);
     }
 }
 
@@ -87,25 +88,50 @@ LookPart part_of(const LookRow& row, std::size_t from) {
     return part;
 }
 
+/// Numbers i to i + 7, as far as there are so many.
+struct Eight {
+    std::size_t i, count;
+};
+
+/// What either of eight pairs of neighbours needs.
+VECINO_INLINE void needs_of_pairs(const LookPart& a, const LookPart& b, Eight eight,
+                                  Masks8& needs) {
+    const auto [i, count] = eight;
+    Floats8 jump2 = {}, cosine = {}, of_a, of_b;
+    Masks8 object, other, lights, other_lights, own, other_own;
+    for (int c = 0; c < 3; ++c) {
+        load(a.albedo[c] + i, of_a, count);
+        load(b.albedo[c] + i, of_b, count);
+        jump2 += (of_a - of_b) * (of_a - of_b);
+        load(a.normal[c] + i, of_a, count);
+        load(b.normal[c] + i, of_b, count);
+        cosine += of_a * of_b;
+    }
+    load(a.object + i, object, count);
+    load(b.object + i, other, count);
+    load(a.lights + i, lights, count);
+    load(b.lights + i, other_lights, count);
+    load(a.own + i, own, count);
+    load(b.own + i, other_own, count);
+    const Masks8 crease = (object >= 0) & (cosine < kCreaseCosine);
+    const Masks8 edge = (object != other) | crease | (jump2 > kAlbedoJump2);
+    const Masks8 reachable = (lights & other_lights) >> 8;
+    const Masks8 differs = ((lights ^ other_lights) & reachable & 255) != 0;
+    const Masks8 shadow = (object == other) & differs;
+    needs = (edge & kCoverage) | (shadow & kShadow) | own | other_own;
+}
+
 /// What either of two neighbours needs, pixel by pixel.
 VECINO_CLONES void compare(const LookPart& a, const LookPart& b, std::size_t count,
                            std::int32_t* of_a, std::int32_t* of_b) {
-    for (std::size_t i = 0; i < count; ++i) {
-        float jump2 = 0, cosine = 0;
-        for (int c = 0; c < 3; ++c) {
-            const float jump = a.albedo[c][i] - b.albedo[c][i];
-            jump2 += jump * jump;
-            cosine += a.normal[c][i] * b.normal[c][i];
-        }
-        const bool same = a.object[i] == b.object[i];
-        const bool crease = (a.object[i] >= 0) & (cosine < kCreaseCosine);
-        const std::int32_t edge = (!same | crease | (jump2 > kAlbedoJump2)) ? kNeedsCoverage : 0;
-        const std::int32_t reachable = (a.lights[i] & b.lights[i]) >> 8;
-        const std::int32_t differs = (a.lights[i] ^ b.lights[i]) & reachable & 255;
-        const std::int32_t shadow = same & (differs != 0) ? kNeedsShadow : 0;
-        const std::int32_t needs = edge | shadow | a.own[i] | b.own[i];
-        of_a[i] |= needs;
-        of_b[i] |= needs;
+    for (std::size_t i = 0; i < count; i += 8) {
+        const std::size_t some = count - i;
+        Masks8 needs, before;
+        needs_of_pairs(a, b, {i, some}, needs);
+        load(of_a + i, before, some);
+        store(before | needs, of_a + i, some);
+        load(of_b + i, before, some);
+        store(before | needs, of_b + i, some);
     }
 }
 

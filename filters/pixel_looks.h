@@ -14,6 +14,7 @@ namespace vecino {
 enum Need : std::uint8_t {
     kNeedsCoverage = 1,  ///< several surfaces or albedos may share it
     kNeedsShadow = 2,    ///< what is in sight of the light differs within it or around it
+    kWideShadow = 4,     ///< and all around it, as far as fit_half_shadow() looks
 };
 
 /// What the pixels of a row are compared by.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "filters/mark_rows.h"
 
 namespace vecino {
 namespace {
@@ -48,35 +49,52 @@ class NeedFinder {
     std::vector<std::int32_t> needs_;
 };
 
-/// In pixels.
+/// In pixels, around all half-shadow.
 int reach_of(int pilot_spp) {
     if (pilot_spp >= 8) return 0;
     return pilot_spp >= 4 ? 1 : 2;
 }
 
-/// Marks pixels of a row within reach of those of it that lie in half-shadow.
-void mark_around(const std::vector<NeedyPixel>& row, int reach, std::vector<std::uint8_t>& marks) {
-    const int last = static_cast<int>(marks.size()) - 1;
-    for (const NeedyPixel& pixel : row) {
-        if ((pixel.needs & kNeedsShadow) == 0) continue;
-        for (int x = std::max(pixel.x - reach, 0); x <= std::min(pixel.x + reach, last); ++x)
-            marks[static_cast<std::size_t>(x)] = 1;
-    }
+/// To each side of a pixel in the middle of a wide half-shadow. Neighbours that differ are both
+/// marked; the fewer first samples, the farther a narrow one scatters.
+constexpr int kWideOfFew = 6;
+int wide_of(int pilot_spp) {
+    return pilot_spp >= 4 ? 4 : kWideOfFew;
 }
 
-/// Adds those that are marked and allowed.
-std::vector<NeedyPixel> with_marked(const std::vector<NeedyPixel>& row,
-                                    const std::vector<std::uint8_t>& marks,
+/// Beyond a wide half-shadow as far as is known.
+constexpr int kFadesOut = 2;
+static_assert(2 * kWideOfFew + kFadesOut <= kNeedsReach);
+
+MarkRows marks_of(const NeedyRows& rows, int width, std::uint8_t needs) {
+    MarkRows marks(rows.size(), width);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        for (const NeedyPixel& pixel : rows[r]) {
+            if ((pixel.needs & needs) != 0) marks.set(r, pixel.x);
+        }
+    }
+    return marks;
+}
+
+/// Adds those that are marked and allowed, and says of all which are wide.
+std::vector<NeedyPixel> with_marked(const std::vector<NeedyPixel>& row, const MarkedPixels& marked,
+                                    const MarkedPixels& wide,
                                     const std::function<bool(int)>& allowed) {
     std::vector<NeedyPixel> out;
     auto own = row.begin();
-    for (int x = 0; x < static_cast<int>(marks.size()); ++x) {
+    const auto take_own = [&] {
+        out.push_back(*own++);
+        if (wide.has(out.back().x)) out.back().needs |= kWideShadow;
+    };
+    marked.visit([&](int x) {
+        while (own != row.end() && own->x < x) take_own();
         if (own != row.end() && own->x == x) {
-            out.push_back(*own++);
-        } else if (marks[static_cast<std::size_t>(x)] != 0 && allowed(x)) {
+            take_own();
+        } else if (allowed(x)) {
             out.push_back({x, kNeedsShadow});
         }
-    }
+    });
+    while (own != row.end()) take_own();
     return out;
 }
 
@@ -96,21 +114,22 @@ NeedyRows find_known(const RecordTracer& tracer, const PixelClusters& clusters, 
 
 NeedyRows find_needs(const RecordTracer& tracer, const PixelClusters& clusters, RowRange rows,
                      int pilot_spp) {
-    const int reach = reach_of(pilot_spp);
-    const RowRange around{std::max(rows.begin - reach, clusters.rows().begin),
-                          std::min(rows.end + reach, clusters.rows().end)};
-    NeedyRows known = find_known(tracer, clusters, around);
-    if (reach == 0) return known;
+    const int wide_reach = wide_of(pilot_spp);
+    const RowRange around{std::max(rows.begin - kNeedsReach, clusters.rows().begin),
+                          std::min(rows.end + kNeedsReach, clusters.rows().end)};
+    const NeedyRows known = find_known(tracer, clusters, around);
+    const MarkRows shadow = marks_of(known, clusters.width(), kNeedsShadow);
+    const MarkRows wide = shadow.within(wide_reach);
+    const MarkRows marked = shadow.near(reach_of(pilot_spp)) | wide.near(wide_reach + kFadesOut);
     NeedyRows needy(static_cast<std::size_t>(rows.end - rows.begin));
-    const auto count = static_cast<int>(known.size());
-    for_each_block(needy.size(), 1, tracer.threads, [&](BlockRange block) {
-        const int y = rows.begin + static_cast<int>(block.begin), r = y - around.begin;
-        std::vector<std::uint8_t> marks(static_cast<std::size_t>(clusters.width()), 0);
-        for (int n = std::max(r - reach, 0); n <= std::min(r + reach, count - 1); ++n)
-            mark_around(known[static_cast<std::size_t>(n)], reach, marks);
-        needy[block.begin] = with_marked(known[static_cast<std::size_t>(r)], marks, [&](int x) {
-            return clusters.first_cluster(x, y).object >= 0;
-        });
+    for_each_block(needy.size(), 16, tracer.threads, [&](BlockRange block) {
+        for (std::size_t r = block.begin; r < block.end; ++r) {
+            const int y = rows.begin + static_cast<int>(r);
+            const auto k = static_cast<std::size_t>(y - around.begin);
+            needy[r] = with_marked(known[k], marked.row(k), wide.row(k), [&](int x) {
+                return clusters.block(x, y).object[x % kPilotPixels] >= 0;
+            });
+        }
     });
     return needy;
 }

@@ -21,9 +21,13 @@ struct NeedyPixel {
 /// The needy pixels of rows, in order; row y of the image is number y - begin.
 using NeedyRows = std::vector<std::vector<NeedyPixel>>;
 
+/// So far around rows find_needs() looks.
+constexpr int kNeedsReach = 14;
+
 /// Of rows of the clusters; their neighbours are looked at where there are any. pilot_spp: in a
 /// wide half-shadow a few first samples often agree by chance, and those of a pixel's neighbours
-/// with them. So the fewer there are, the farther around those that are known to lie in one.
+/// with them. So the fewer there are, the farther around those that are known to lie in one; and
+/// farther around wide ones in any case, as these fade out slowly.
 NeedyRows find_needs(const RecordTracer& tracer, const PixelClusters& clusters, RowRange rows,
                      int pilot_spp);
 

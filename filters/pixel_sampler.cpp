@@ -13,7 +13,6 @@ SampledPixel PixelSampler::sample(const NeedyPixel& pixel, int y) const {
     const RecordTracer& tracer = inputs_.tracer;
     SampledPixel out{};
     out.clusters = inputs_.clusters.clusters(pixel.x, y);
-    if (pixel.samples <= pilot && !out.clusters.crowded) return out;
     const int before = out.clusters.count;
     if (paths_of(pixel, out.clusters.crowded) == 0) {
         out.rays += tracer.kernel.add_samples(
@@ -32,12 +31,20 @@ SampledPixel PixelSampler::sample(const NeedyPixel& pixel, int y) const {
     return out;
 }
 
-double PixelSampler::work(const NeedyPixel& pixel, int y) const {
+bool PixelSampler::is_crowded(const NeedyPixel& pixel, int y) const {
     const ClusterList* const list = inputs_.clusters.list(pixel.x, y);
-    const bool crowded = list != nullptr && list->crowded;
+    return list != nullptr && list->crowded;
+}
+
+bool PixelSampler::wants(const NeedyPixel& pixel, int y) const {
     const auto pilot = static_cast<std::uint32_t>(inputs_.plan.pilot_spp);
-    if (pixel.samples <= pilot && !crowded) return 0;
-    const std::uint32_t paths = paths_of(pixel, crowded);
+    return pixel.samples > pilot || is_crowded(pixel, y);
+}
+
+double PixelSampler::work(const NeedyPixel& pixel, int y) const {
+    if (!wants(pixel, y)) return 0;
+    const auto pilot = static_cast<std::uint32_t>(inputs_.plan.pilot_spp);
+    const std::uint32_t paths = paths_of(pixel, is_crowded(pixel, y));
     return (paths > 0 ? kPathWork * paths : pixel.samples - pilot) + kEdgeStart;
 }
 

@@ -20,7 +20,7 @@ struct SampledPixel {
     std::optional<TracedPixel> traced;
     std::vector<Orphan> orphans;
     std::uint64_t rays = 0;
-    std::uint64_t samples = 0;  ///< none: the pixel is as it was
+    std::uint64_t samples = 0;
 };
 
 class PixelSampler {
@@ -35,13 +35,18 @@ class PixelSampler {
 
     explicit PixelSampler(const Inputs& inputs) : inputs_(inputs) {}
 
-    /// Changes nothing but what it returns: it may be called to see how long it takes.
+    /// Whether a pixel gets any samples.
+    [[nodiscard]] bool wants(const NeedyPixel& pixel, int y) const;
+
+    /// Precondition: that it wants any. Changes nothing but what it returns: it may be called to
+    /// see how long it takes.
     [[nodiscard]] SampledPixel sample(const NeedyPixel& pixel, int y) const;
 
     /// About what sample() does, in samples of a pixel that is not crowded.
     [[nodiscard]] double work(const NeedyPixel& pixel, int y) const;
 
   private:
+    [[nodiscard]] bool is_crowded(const NeedyPixel& pixel, int y) const;
     [[nodiscard]] std::uint32_t paths_of(const NeedyPixel& pixel, bool crowded) const;
     void trace_paths(Pixel at, std::uint32_t paths, SampledPixel& out) const;
     [[nodiscard]] std::int32_t known_surface(const NeedyPixel& pixel,

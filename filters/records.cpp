@@ -301,14 +301,16 @@ RecordTrial try_records(const RecordInputs& inputs, int number) {
     gather_level(tracer, candidates, kPaths, level, work);
     const double seconds = watch.seconds();
     const auto records = std::max(static_cast<double>(candidates.size()), 1.0);
-    bool has_light = false;
-    for (const Record& record : level.records)
-        has_light |= std::ranges::any_of(record.light, [](float light) { return light > 0; });
+    glm::vec3 light(0.0f);
+    for (const Record& record : level.records) {
+        for (std::size_t c = 0; c < 3; ++c)
+            light[static_cast<int>(c)] += record.light[c] + record.light[c + 3];
+    }
     return {static_cast<double>(candidates.size()) * one_of,
             seconds / (records * (kPaths + kRecordStart)),
             shown_noise(inputs, level.records),
             kPaths,
-            has_light,
+            light / static_cast<float>(records),
             records / std::max(occupied, 1.0)};
 }
 

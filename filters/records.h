@@ -114,7 +114,7 @@ struct RecordTrial {
     double path_s;         ///< of one thread, by paths + kRecordStart
     double noise;          ///< mean square in sRGB of what their light adds to pixels
     int paths;             ///< of each
-    bool has_light;        ///< whether some of it reaches them
+    glm::vec3 light;       ///< that reaches them, over pi: their mean
     double surfaces;       ///< of a cell that has any
 };
 RecordTrial try_records(const RecordInputs& inputs, int number);

@@ -14,6 +14,7 @@
 #include "filters/band_survey.h"
 #include "filters/pace.h"
 #include "filters/pixel_clusters.h"
+#include "filters/pixel_needs.h"
 #include "filters/record_band.h"
 #include "filters/surface_records_stages.h"
 
@@ -102,7 +103,7 @@ StagedRender render_in_stages(const Scene& scene, const RenderSettings& settings
     const TraceTask task = render_task(scene, flat, settings);
     const RecordTracer tracer{task, *kernel.records, settings.threads};
     // Fits reach two cells around those that a pixel is blended from, which are one away.
-    const int margin = 3 * run.plan.cell;
+    const int margin = std::max(3 * run.plan.cell, kNeedsReach);
     const int rows = band_rows(size, run.plan.cell);
     out.counts.band_rows = rows;
     PixelClusters clusters(size.width, std::min(rows + 2 * margin, size.height),

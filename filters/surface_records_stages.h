@@ -15,9 +15,15 @@ class Pace;
 
 constexpr double kPathWork = 3;  ///< of a whole path of a pixel, held against a sample of it
 
+/// Further samples of a needy pixel that gets any. Fewer save little time and cost much.
+constexpr int kLeastEdgeSpp = 16;
+
 // What a stage of surface_records costs before its first sample, in samples: measured at 512x512,
 // and scene by scene much the same.
 constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 6;
+
+/// What half-shadow takes to smooth, in samples of a needy pixel.
+constexpr double kSmoothingWork = 2.5;
 
 /// Seconds by stage.
 struct StageTimes {

@@ -263,7 +263,7 @@ TEST_CASE("a pace gives to records and samples what the time allows", "[auto]") 
         Pace pace(seconds, threads, found);
         pace.begin();
         SurfaceRecordsPlan plan = Pace::first_plan();
-        pace.choose_pilot(4e-8, plan);
+        pace.choose_pilot({4e-8, 16e-8}, plan);
         pace.choose_structure(here, plan);
         pace.choose_paths({0, 4300, 3e-8}, plan);
         pace.choose_edges([](int edge_spp) { return 14000.0 * (edge_spp + 25); }, 4e-8, plan);
@@ -327,13 +327,38 @@ TEST_CASE("a machine that is busy is given less to do", "[auto]") {
         Pace pace(1, 2, found);
         pace.begin();
         SurfaceRecordsPlan plan = Pace::first_plan();
-        pace.choose_pilot(4e-8, plan);
-        pace.take_stage(0.2, 0.1 * slowness);
+        pace.choose_pilot({4e-8, 16e-8}, plan);
+        pace.take_pilot(0.2, 0.1 * slowness, 0);
         pace.choose_structure({14000, 1150, 8e-7, true, 6e-8, 4e-8}, plan);
         pace.choose_paths({0, 4300, 3e-8 * slowness}, plan);
         return plan.cell * plan.cell < 32 ? 4.0 * plan.record_paths : plan.record_paths;
     };
     CHECK(paths_on(4) < 0.5 * paths_on(1));
+}
+
+TEST_CASE("first samples are traced again, and more of them, only where that pays", "[auto]") {
+    // What samples of needy pixels leave, with few first ones and with four times as many.
+    const auto curve = [](double error) {
+        EdgeCurve edges;
+        for (int spp = 1; spp <= 1024; spp *= 2)
+            edges.push_back({1.0 * spp, 10.0 + spp, error / spp});
+        return edges;
+    };
+    const auto pilot_of = [&](double error_with_more, double pilot_s) {
+        Pace pace(1, 2, usual_findings());
+        pace.begin();
+        SurfaceRecordsPlan plan = Pace::first_plan();
+        pace.choose_pilot({1e-6, 4e-6}, plan);  // so slow that there is time for one
+        CHECK(plan.pilot_spp == 1);
+        pace.take_pilot(2 * pilot_s, pilot_s, 0);
+        PaceFindings here{100000, 1150, 8e-7, true, 6e-8, 4e-8};
+        here.edges = {{1, curve(1e-2)}, {4, curve(error_with_more)}};
+        pace.choose_structure(here, plan);
+        return plan.pilot_spp;
+    };
+    CHECK(pilot_of(1e-3, 0.02) == 4);
+    CHECK(pilot_of(1e-2, 0.02) == 1);  // they would tell nothing
+    CHECK(pilot_of(1e-3, 0.5) == 1);   // there is no time
 }
 
 TEST_CASE("a budget that is none is one clear line", "[auto]") {

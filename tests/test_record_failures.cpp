@@ -40,6 +40,42 @@ TEST_CASE("half-shadow without further samples is smooth, and hard edges stay ha
     CHECK(db(threads[0], paths(many, settings, 256)) > 26.8);  // 25.6 so
 }
 
+TEST_CASE("half-shadow is fitted to the pixels around, and fades out", "[surface_records]") {
+    const RenderSettings settings = [] {
+        RenderSettings all = small_settings({256, 256}, 1);
+        all.max_depth = 1;
+        return all;
+    }();
+    const auto quality = [&](const std::string& name, const SurfaceRecordsPlan& plan) {
+        const Scene scene = repository_scene(name);
+        return db(records(scene, settings, plan).frame.radiance, paths(scene, settings, 1024));
+    };
+    // In brackets, without: pixels by their own samples, and none beyond what eight of them see.
+    CHECK(quality("failures/f16_soft_shadow", {2, 32, 16, 0, 64, 64, 1.0, 0.15}) > 45);
+    CHECK(quality("failures/f16_soft_shadow", {8, 200, 16, 0, 64, 64, 1.0, 0.15}) > 53);
+    CHECK(quality("failures/f16_hard_shadow", {4, 64, 16, 0, 64, 64, 1.0, 0.15}) > 40);
+}
+
+TEST_CASE("however few samples there are, no edge of a lamp is left to the first ones",
+          "[surface_records]") {
+    const Scene scene = repository_scene("hard_shadows");
+    RenderSettings settings = small_settings({256, 256}, 1);
+    settings.max_depth = 1;
+    const Image made = records(scene, settings, {1, 4, 16, 0, 64, 64, 1.0, 0.15}).frame.radiance;
+    const Image reference = paths(scene, settings, 256);
+    // Of pixels that are too bright to be shown, by one sample many are as dark as the ceiling.
+    int dark = 0, bright = 0;
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 256; ++x) {
+            if (!(reference(x, y).y > 1.5f)) continue;
+            ++bright;
+            if (made(x, y).y < 0.7f) ++dark;
+        }
+    }
+    CHECK(bright > 20);
+    CHECK(dark == 0);
+}
+
 namespace {
 
 /// Bars and tiles a tenth of a pixel above a wall, cells down to single pixels.
