@@ -9,8 +9,8 @@
 namespace vecino {
 namespace {
 
-constexpr double kBiasPerLevel = 1.6;  ///< bias falls so much with a level
-constexpr double kRefinedArea = 0.3;   ///< of the image: what refined records are shown in
+// Bias falls so much with the first level of large cells, and with any other.
+constexpr double kBiasOfFirstLevel = 3.5, kBiasPerLevel = 1.6;
 
 constexpr int kMostPackets = 1 << 16;
 constexpr int kMostEdgeSpp = 65536;
@@ -37,8 +37,8 @@ struct Structure {
     int cell, levels;
     double fit_sigma, refine_tau;
 };
-constexpr Structure kStructures[] = {
-    {16, 0, 1.0, 0.15}, {8, 0, 0.85, 0.15}, {4, 0, 1.0, 0.15}, {4, 1, 1.0, 0.15}, {4, 2, 1.0, 0.2}};
+constexpr Structure kStructures[] = {{16, 0, 1.0, 0.15}, {8, 0, 0.85, 0.15}, {8, 1, 0.85, 0.15},
+                                     {8, 2, 0.85, 0.15}, {4, 1, 1.0, 0.15},  {4, 2, 1.0, 0.2}};
 constexpr double kPathsPerSample[] = {1, 2, 4, 8, 16, 32};
 
 // Records of fewer paths are not worth their place.
@@ -54,7 +54,10 @@ SurfaceRecordsPlan plan_by(const Structure& structure, double edge_spp, double p
     plan.cell = structure.cell;
     plan.levels = structure.levels;
     plan.record_paths = record_paths;
-    plan.refined_record_paths = std::max(record_paths / 2, kFewestPaths);
+    // Fewer leave more noise than they save.
+    constexpr double kOfRefined = 0.7;
+    plan.refined_record_paths =
+        in_packets(std::max(kOfRefined * record_paths, double{kFewestPaths}), kMostPaths);
     plan.fit_sigma = structure.fit_sigma;
     plan.refine_tau = structure.refine_tau;
     return plan;
@@ -70,6 +73,12 @@ SurfaceRecordsPlan filled(const PilotFindings& found, const CostRates& rates,
         (surface_records_cost(found, rates, plan_of(middle)) <= seconds ? low : high) = middle;
     }
     return plan_of(low);
+}
+
+/// Of cells so large, those that are halved; measured on the scenes of this repository.
+double halved_share(int cell) {
+    constexpr double kPerPixel = 0.05, kMost = 0.6;
+    return std::min(kPerPixel * cell, kMost);
 }
 
 /// Of a needy pixel, in samples.
@@ -109,10 +118,19 @@ CostRates slower(const CostRates& rates, double times) {
             rates.edge_sample_s * times, rates.record_path_s * times,  rates.record_s * times};
 }
 
+double refined_share(const SurfaceRecordsPlan& plan, double growth) {
+    double share = 0, all = 1;
+    for (int level = 0; level < plan.levels; ++level) {
+        all *= growth;
+        share += all * halved_share(std::max(plan.cell >> level, 1));
+    }
+    return share;
+}
+
 double surface_records_cost(const PilotFindings& found, const CostRates& rates,
                             const SurfaceRecordsPlan& plan) {
     const double base = records_of(found, plan.cell);
-    const double refined = kRefinedShare * base * plan.levels;
+    const double refined = base * refined_share(plan, found.record_growth);
     const double paths = base * (plan.record_paths + kRecordStart) +
                          refined * (plan.refined_record_paths + kRecordStart);
     const double edges = found.edges.empty() ? usual_edge_work(plan.edge_spp)
@@ -129,15 +147,17 @@ double edge_noise_share(const SurfaceRecordsPlan& plan) {
 
 double record_noise_share(const SurfaceRecordsPlan& plan) {
     const auto share = [](int paths) { return std::pow(512.0 / paths, kRecordSlope); };
-    const double refined = plan.levels > 0 ? kRefinedArea : 0;
+    const double refined = plan.levels > 0 ? halved_share(plan.cell) : 0;
     return (1 - refined) * share(plan.record_paths) + refined * share(plan.refined_record_paths);
 }
 
 double surface_records_error(const PilotFindings& found, const SurfaceRecordsPlan& plan) {
     const RecordErrors from = found.records.value_or(kUsualErrors);
     const double halvings = std::log2(8.0 / plan.cell);
-    const double bias = from.bias_at_8 * std::pow(kBiasPerHalving, -halvings) *
-                        std::pow(kBiasPerLevel, -plan.levels);
+    const double first_level = plan.cell >= 8 ? kBiasOfFirstLevel : kBiasPerLevel;
+    const double levels =
+        plan.levels > 0 ? first_level * std::pow(kBiasPerLevel, plan.levels - 1) : 1;
+    const double bias = from.bias_at_8 * std::pow(kBiasPerHalving, -halvings) / levels;
     const double edges = found.edges.empty() ? from.edge_noise * edge_noise_share(plan)
                                              : point_at(found.edges, plan.edge_spp).error;
     return edges + from.record_noise * record_noise_share(plan) + bias + from.unexplained;

@@ -26,8 +26,9 @@ struct CostRates {
 /// depend on the clock. rays_per_path: of path tracing.
 CostRates nominal_rates(double rays_per_path);
 
-/// Cells are halved where surfaces meet: with each level so many records for each that is there.
-constexpr double kRefinedShare = 0.75;
+/// Records of all halved cells, for each of the coarsest. Cells are halved where surfaces meet or
+/// bend: the larger they are, the more of them. growth: of records, were all of them halved.
+double refined_share(const SurfaceRecordsPlan& plan, double growth);
 
 /// Its bias falls so much with cells of half the side.
 constexpr double kBiasPerHalving = 5.3;

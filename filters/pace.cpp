@@ -176,7 +176,7 @@ void Pace::choose_paths(const RecordCount& level, SurfaceRecordsPlan& plan) {
         std::clamp(level.path_s, 0.7 * rates_.record_path_s, 1.6 * rates_.record_path_s);
     // Each level to come has about twice the records of the one before; the first halved one half
     // of those that there are.
-    const double finer = level.level == 0 ? kRefinedShare * plan.levels *
+    const double finer = level.level == 0 ? refined_share(plan, found_.record_growth) *
                                                 plan.refined_record_paths / plan.record_paths
                                           : std::exp2(plan.levels - level.level + 1) - 2;
     const double all_s = static_cast<double>(level.records) * (1 + finer) * path_s;
