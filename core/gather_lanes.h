@@ -12,55 +12,38 @@
 namespace vecino {
 namespace {
 
-/// Sums over paths, by quarters of them.
+/// Sums over paths.
 class GatherSums {
   public:
-    void add(const SampleBlock& block, std::uint32_t first, std::uint32_t end, RecordLight& out) {
-        for (std::uint32_t i = first; i < end; ++i) {
-            const std::uint32_t at = i - first;
-            float both[3];
+    void add(const SampleBlock& block, std::uint32_t count, RecordLight& out) {
+        for (std::uint32_t at = 0; at < count; ++at) {
             float check = 0;
-            for (int c = 0; c < 3; ++c) {
-                both[c] = block.direct[c][at] + block.indirect[c][at];
-                check += both[c];
-            }
+            for (int c = 0; c < 3; ++c) check += block.direct[c][at] + block.indirect[c][at];
             if (!(check - check == 0.0f)) {
                 ++out.dropped;
                 continue;
             }
-            const std::uint32_t quarter = i & 3u;
-            ++counts_[quarter];
+            ++paths_;
             for (int c = 0; c < 3; ++c) {
                 background_[c] += static_cast<double>(block.direct[c][at]);
-                quarters_[quarter][c] += static_cast<double>(both[c]);
+                // As one float: what is summed is what was checked.
+                both_[c] += static_cast<double>(block.direct[c][at] + block.indirect[c][at]);
             }
         }
     }
 
     void finish(RecordLight& out) const {
-        const double paths = counts_[0] + counts_[1] + counts_[2] + counts_[3];
-        if (paths == 0) return;
+        if (paths_ == 0) return;
         for (int c = 0; c < 3; ++c) {
-            const double total =
-                quarters_[0][c] + quarters_[1][c] + quarters_[2][c] + quarters_[3][c];
-            out.background[c] = static_cast<float>(background_[c] / paths);
-            out.indirect[c] = static_cast<float>((total - background_[c]) / paths);
-            double spread = 0;
-            int full = 0;
-            for (int q = 0; q < 4; ++q) {
-                if (counts_[q] == 0) continue;
-                const double deviation = quarters_[q][c] / counts_[q] - total / paths;
-                spread += deviation * deviation;
-                ++full;
-            }
-            out.variance[c] = full > 1 ? static_cast<float>(spread / (full * (full - 1))) : 0.0f;
+            out.background[c] = static_cast<float>(background_[c] / paths_);
+            out.indirect[c] = static_cast<float>((both_[c] - background_[c]) / paths_);
         }
     }
 
   private:
-    double quarters_[4][3]{};
+    double both_[3]{};
     double background_[3]{};
-    double counts_[4]{};
+    double paths_ = 0;
 };
 
 inline void describe_record(const SampleLanes& sample, RecordLight& out) {
@@ -108,7 +91,7 @@ std::uint64_t gather_record(const TraceTask& whole, const RecordRange& range, Re
                 packet.gather(tracer, look.surface, active, block, static_cast<int>(at - first));
             inverse_distance += sum_of(nearness, active);
         }
-        sums.add(block, first, end, out);
+        sums.add(block, end - first, out);
     }
     sums.finish(out);
     out.inverse_distance = inverse_distance / static_cast<float>(range.paths);

@@ -125,7 +125,6 @@ struct RecordLight {
     float normal[3];         ///< of shading
     float background[3];     ///< straight from the background
     float indirect[3];       ///< by way of other surfaces
-    float variance[3];       ///< of the mean of both together, from the spread of four quarters
     float inverse_distance;  ///< mean of one over the distance to what the paths hit first
     std::uint32_t dropped;   ///< paths whose light was not finite; they enter no mean
 };

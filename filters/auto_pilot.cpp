@@ -266,8 +266,7 @@ class PilotRun {
         const double beyond = both.mean - 2 * noise_;
         bias_ = std::max(beyond, 0.0);
         if (beyond < 3 * both.standard_error) return;  // it may be noise
-        errors.bias_at_8 = std::max(beyond * std::pow(kBiasPerHalving, -std::log2(cell / 8.0)),
-                                    0.25 * kUsualErrors.bias_at_8);
+        errors.bias_at_8 = std::max(beyond / bias_share(cell), 0.25 * kUsualErrors.bias_at_8);
     }
 
     /// Traced paths must not say much else.

@@ -118,6 +118,11 @@ CostRates slower(const CostRates& rates, double times) {
             rates.edge_sample_s * times, rates.record_path_s * times,  rates.record_s * times};
 }
 
+double bias_share(double cell) {
+    constexpr double kPerHalving = 4.5, kPerDoubling = 8;
+    return std::pow(cell > 8 ? kPerDoubling : kPerHalving, std::log2(cell / 8));
+}
+
 double refined_share(const SurfaceRecordsPlan& plan, double growth) {
     double share = 0, all = 1;
     for (int level = 0; level < plan.levels; ++level) {
@@ -153,11 +158,10 @@ double record_noise_share(const SurfaceRecordsPlan& plan) {
 
 double surface_records_error(const PilotFindings& found, const SurfaceRecordsPlan& plan) {
     const RecordErrors from = found.records.value_or(kUsualErrors);
-    const double halvings = std::log2(8.0 / plan.cell);
     const double first_level = plan.cell >= 8 ? kBiasOfFirstLevel : kBiasPerLevel;
     const double levels =
         plan.levels > 0 ? first_level * std::pow(kBiasPerLevel, plan.levels - 1) : 1;
-    const double bias = from.bias_at_8 * std::pow(kBiasPerHalving, -halvings) / levels;
+    const double bias = from.bias_at_8 * bias_share(plan.cell) / levels;
     const double edges = found.edges.empty() ? from.edge_noise * edge_noise_share(plan)
                                              : point_at(found.edges, plan.edge_spp).error;
     return edges + from.record_noise * record_noise_share(plan) + bias + from.unexplained;

@@ -30,8 +30,8 @@ CostRates nominal_rates(double rays_per_path);
 /// bend: the larger they are, the more of them. growth: of records, were all of them halved.
 double refined_share(const SurfaceRecordsPlan& plan, double growth);
 
-/// Its bias falls so much with cells of half the side.
-constexpr double kBiasPerHalving = 5.3;
+/// The bias of records in cells of so many pixels to a side, held against that of eight.
+double bias_share(double cell);
 
 /// Its errors fall with samples and paths to these powers: Sobol points.
 constexpr double kEdgeSlope = 1.3, kRecordSlope = 1.25;

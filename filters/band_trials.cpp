@@ -9,6 +9,20 @@
 #include "filters/record_check.h"
 
 namespace vecino {
+namespace {
+
+/// With the twentieth part that is greatest taken for as great as the greatest of the others: of
+/// few values, one beside a contact would speak for all.
+double usual_mean(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::ranges::sort(values);
+    const double most = values[(values.size() - 1) * 19 / 20];
+    double sum = 0;
+    for (const double value : values) sum += std::min(value, most);
+    return sum / static_cast<double>(values.size());
+}
+
+}  // namespace
 
 BandTrials::BandTrials(const Inputs& inputs) : inputs_(inputs) {
     for (const auto& row : inputs.needy) needy_pixels_ += static_cast<double>(row.size());
@@ -46,21 +60,24 @@ double BandTrials::first_samples_s(int samples) const {
 
 PaceFindings BandTrials::structure() const {
     constexpr std::uint32_t kTrySamples = 32;
-    constexpr double kFitNoise = 0.06;  // of a record's own, once it is fitted to those around
+    constexpr double kFitNoise = 0.4;  // of a record's own, once it is fitted to those around
     PaceFindings findings;
     findings.needy_pixels = needy_pixels_;
     glm::vec3 ambient(0.0f);
     float trials = 0;
+    std::vector<double> noise;
     if (has_records(inputs_.tracer.task)) {
         findings.path_s = inputs_.pace.typical([&](int number) {
             const RecordTrial made = try_records({inputs_.tracer, inputs_.clusters}, number);
             findings.records_at_16 = made.records_at_16;
-            ambient += (made.light - ambient) / ++trials;
+            ++trials;
+            ambient += (made.light - ambient) / trials;
+            noise.insert(noise.end(), made.noise.begin(), made.noise.end());
             findings.surfaces = made.surfaces;
-            findings.record_noise =
-                kFitNoise * made.noise * std::pow(made.paths / 512.0, kRecordSlope);
+            findings.record_noise = std::pow(made.paths / 512.0, kRecordSlope);
             return made.path_s;
         });
+        findings.record_noise *= kFitNoise * usual_mean(std::move(noise));
     }
     const auto given = [this](std::size_t, std::size_t) {
         return static_cast<std::uint32_t>(inputs_.plan.pilot_spp) + kTrySamples;

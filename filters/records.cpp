@@ -160,7 +160,6 @@ Record make_record(const TraceTask& task, const Candidate& candidate, int cell,
         record.light[c] = light.indirect[c];
         record.light[c + 3] = light.background[c];
     }
-    record.variance = vector(light.variance);
     return record;
 }
 
@@ -225,8 +224,9 @@ double time_some(const RecordTracer& tracer, const Candidates& candidates, int p
            std::max(static_cast<double>(some.size()) * (paths + kRecordStart), 1.0);
 }
 
-/// Of a record's light where its pixel shows it, in sRGB; of what is too bright to be shown none.
-double shown_noise(const RecordInputs& inputs, const Record& record) {
+/// Of a record's light where its pixel shows it, in sRGB, by the same with other paths; of what is
+/// too bright to be shown none.
+double shown_noise(const RecordInputs& inputs, const Record& record, const Record& other) {
     const Cluster cluster =
         inputs.clusters.first_cluster(static_cast<int>(record.x), static_cast<int>(record.y));
     if (cluster.object != record.object) return 0;  // an edge: it has noise of its own
@@ -234,21 +234,15 @@ double shown_noise(const RecordInputs& inputs, const Record& record) {
     const glm::vec3 direct = direct_light(inputs.tracer.task, cluster);
     double sum = 0;
     for (int c = 0; c < 3; ++c) {
-        const std::size_t i = static_cast<std::size_t>(c);
-        const float light = direct[c] + record.light[i] + record.light[i + 3];
-        const float shown = means.emission[c] + means.albedo[c] * light;
+        const auto i = static_cast<std::size_t>(c);
+        const float light = record.light[i] + record.light[i + 3];
+        const float difference = light - other.light[i] - other.light[i + 3];
+        const float shown = means.emission[c] + means.albedo[c] * (direct[c] + light);
         if (!(shown < 1)) continue;
-        const float slope = means.albedo[c] * srgb_slope(shown);
-        sum += static_cast<double>(slope * slope * record.variance[c]);
+        const float off = means.albedo[c] * srgb_slope(shown) * difference;
+        sum += static_cast<double>(off * off) / 2;
     }
     return sum / 3;
-}
-
-/// Their mean.
-double shown_noise(const RecordInputs& inputs, const std::vector<Record>& records) {
-    double sum = 0;
-    for (const Record& record : records) sum += shown_noise(inputs, record);
-    return sum / std::max(static_cast<double>(records.size()), 1.0);
 }
 
 }  // namespace
@@ -280,7 +274,8 @@ std::size_t count_records(const RecordInputs& inputs, int cell) {
 }
 
 RecordTrial try_records(const RecordInputs& inputs, int number) {
-    constexpr std::size_t kCells = 64, kRun = 8, kApart = 5;  // neighbours, as records are made in
+    constexpr std::uint32_t kOtherSeed = 0x9e3779b9u;
+    constexpr std::size_t kCells = 48, kRun = 8, kApart = 5;  // neighbours, as records are made in
     constexpr int kPaths = 32;
     RecordLevel level(16, inputs.clusters.width(), inputs.clusters.rows());
     const std::size_t step = std::max(level.active.size() * kRun / kCells, kRun);
@@ -296,19 +291,26 @@ RecordTrial try_records(const RecordInputs& inputs, int number) {
     double occupied = 0;
     for (std::size_t i = 0; i < level.active.size(); ++i)
         occupied += level.first[i + 1] > level.first[i] ? 1 : 0;
+    TraceTask other_paths = inputs.tracer.task;
+    other_paths.seed += kOtherSeed;
+    RecordLevel others(level.cell(), level.cell(), {0, level.cell()});
     RecordWork work;
     const ThreadStopwatch watch;
     gather_level(tracer, candidates, kPaths, level, work);
-    const double seconds = watch.seconds();
+    gather_level({other_paths, tracer.kernel, 1}, candidates, kPaths, others, work);
+    const double seconds = watch.seconds() / 2;
     const auto records = std::max(static_cast<double>(candidates.size()), 1.0);
     glm::vec3 light(0.0f);
-    for (const Record& record : level.records) {
+    std::vector<double> noise;
+    for (std::size_t i = 0; i < level.records.size(); ++i) {
+        const Record& record = level.records[i];
         for (std::size_t c = 0; c < 3; ++c)
             light[static_cast<int>(c)] += record.light[c] + record.light[c + 3];
+        noise.push_back(shown_noise(inputs, record, others.records[i]));
     }
     return {static_cast<double>(candidates.size()) * one_of,
             seconds / (records * (kPaths + kRecordStart)),
-            shown_noise(inputs, level.records),
+            std::move(noise),
             kPaths,
             light / static_cast<float>(records),
             records / std::max(occupied, 1.0)};

@@ -32,7 +32,6 @@ struct Record {
     float nearness;            ///< mean of one over the distance to what is around it
     float least_cosine;        ///< between its normal and others of its surface in the cell
     RecordValue light;         ///< over pi
-    glm::vec3 variance;        ///< of the mean of both, an upper bound
     glm::vec3 u_axis, v_axis;  ///< tangents; times (position - position_world) they give u and v
     std::array<std::array<float, kFitTerms>, kRecordChannels> fit;
     RecordValue least, most;  ///< that the fit may say
@@ -110,12 +109,12 @@ std::size_t count_records(const RecordInputs& inputs, int cell);
 
 /// Records of a few cells, to see how long they take.
 struct RecordTrial {
-    double records_at_16;  ///< of all cells, were their sides 16 pixels; extrapolated
-    double path_s;         ///< of one thread, by paths + kRecordStart
-    double noise;          ///< mean square in sRGB of what their light adds to pixels
-    int paths;             ///< of each
-    glm::vec3 light;       ///< that reaches them, over pi: their mean
-    double surfaces;       ///< of a cell that has any
+    double records_at_16;       ///< of all cells, were their sides 16 pixels; extrapolated
+    double path_s;              ///< of one thread, by paths + kRecordStart
+    std::vector<double> noise;  ///< by record: square in sRGB of what its noise adds to pixels
+    int paths;                  ///< of each
+    glm::vec3 light;            ///< that reaches them, over pi: their mean
+    double surfaces;            ///< of a cell that has any
 };
 RecordTrial try_records(const RecordInputs& inputs, int number);
 
