@@ -92,14 +92,22 @@ TEST_CASE("more time is never expected to give a worse image", "[auto]") {
     }
 }
 
+namespace {
+
+int finest_cell(const SurfaceRecordsPlan& plan) {
+    return plan.cell >> plan.levels;
+}
+
+}  // namespace
+
 TEST_CASE("cells shrink as budgets grow, and sooner where cells are what is wrong", "[auto]") {
     PilotFindings found = usual_findings();
     const CostRates rates = nominal_rates(3.4);
-    CHECK(plan_surface_records(found, rates, 0.06).plan.cell >= 8);
-    CHECK(plan_surface_records(found, rates, 4).plan.cell <= 4);
-    const int usual = plan_surface_records(found, rates, 0.1).plan.cell;
+    CHECK(finest_cell(plan_surface_records(found, rates, 0.06).plan) >= 8);
+    CHECK(finest_cell(plan_surface_records(found, rates, 4).plan) <= 4);
+    const int usual = finest_cell(plan_surface_records(found, rates, 0.1).plan);
     found.records->bias_at_8 *= 100;
-    CHECK(plan_surface_records(found, rates, 0.1).plan.cell < usual);
+    CHECK(finest_cell(plan_surface_records(found, rates, 0.1).plan) < usual);
 }
 
 TEST_CASE("a budget that nothing fits gets the least of everything", "[auto]") {
@@ -271,7 +279,7 @@ TEST_CASE("a pace gives to records and samples what the time allows", "[auto]") 
     };
     const SurfaceRecordsPlan little = edges_in(0.1, 2), much = edges_in(2, 2);
     CHECK(little.pilot_spp < much.pilot_spp);
-    CHECK(little.cell > much.cell);
+    CHECK(finest_cell(little) > finest_cell(much));
     CHECK(little.edge_spp < much.edge_spp);
     CHECK(little.record_paths < much.record_paths);
     // Nothing took any time here but the choices: all of it is there for samples.
