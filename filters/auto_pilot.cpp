@@ -118,7 +118,12 @@ class PilotRun {
         const int first = pilot_.reduction;
         pilot_.reduction = reduction;
         measure_path();
-        if (pilot_.found.has_records_method) measure_records(first);
+        if (!pilot_.found.has_records_method || path_is_enough()) return;
+        measure_records(first);
+    }
+
+    [[nodiscard]] bool path_is_enough() const {
+        return is_beyond_sight(plan_path(pilot_.found, pilot_.rates, (1 - share()) * budget()));
     }
 
     /// Of the first frames: they take some 600 ns a pixel, ten times that where most are edges, and
@@ -162,6 +167,13 @@ class PilotRun {
         return budget_s_ && pilot_.found.has_records_method && share() * *budget_s_ < kLeastPilot_s;
     }
 
+    /// In seconds; where a budget is given in samples, those of a usual machine.
+    [[nodiscard]] double budget() const {
+        return budget_s_
+                   ? *budget_s_
+                   : frames_.settings().spp * pilot_.found.pixels * pilot_.rates.path_sample_s;
+    }
+
     void assume() {
         constexpr double kUsualRecords = 1.06 / 64;
         pilot_.rates = nominal_rates(kUsualRays);
@@ -174,10 +186,7 @@ class PilotRun {
 
     /// The largest frames that the pilot's share of the budget has room for; 0: none.
     [[nodiscard]] int affordable_reduction() const {
-        const double budget_s =
-            budget_s_ ? *budget_s_
-                      : frames_.settings().spp * pilot_.found.pixels * pilot_.rates.path_sample_s;
-        const double left_s = share() * budget_s - (budget_s_ ? spent_s() : 0);
+        const double left_s = share() * budget() - (budget_s_ ? spent_s() : 0);
         const double least = std::min(kLeastPixels, frames_.pixels(pilot_.reduction));
         for (int reduction = 1; frames_.pixels(reduction) >= least && reduction <= kMostReduction;
              ++reduction) {

@@ -203,6 +203,11 @@ Schedule plan_surface_records(const PilotFindings& found, const CostRates& rates
     return best;
 }
 
+bool is_beyond_sight(const Schedule& path) {
+    constexpr double kLeastError = 6.3e-8;
+    return path.predicted_error && *path.predicted_error <= kLeastError;
+}
+
 Plans choose_schedule(const PilotFindings& found, const CostRates& rates, double seconds) {
     Plans plans{plan_path(found, rates, seconds), std::nullopt, true, ""};
     if (!found.has_records_method) {
@@ -216,7 +221,9 @@ Plans choose_schedule(const PilotFindings& found, const CostRates& rates, double
     const bool path_is_late = path.predicted_s > at_most_s;
     // Its least plan shows far more than one packet of paths.
     const double allowed_s = path_is_late ? 2 * path.predicted_s : at_most_s;
-    if (records.predicted_s > std::max(allowed_s, at_most_s)) {
+    if (is_beyond_sight(path) && !path_is_late) {
+        plans.reason = "path tracing alone leaves nothing that could be seen";
+    } else if (records.predicted_s > std::max(allowed_s, at_most_s)) {
         plans.reason = "not even the least plan of surface_records fits";
     } else if (!path.predicted_error || path_is_late) {
         plans.takes_path = false;

@@ -108,6 +108,10 @@ double surface_records_error(const PilotFindings& found, const SurfaceRecordsPla
 Schedule plan_path(const PilotFindings& found, const CostRates& rates, double seconds);
 Schedule plan_surface_records(const PilotFindings& found, const CostRates& rates, double seconds);
 
+/// Whether path tracing alone leaves no error that could be seen: 72 dB. Then nothing is held
+/// against it.
+bool is_beyond_sight(const Schedule& path);
+
 /// Both, and which of them is chosen. Of two that are equal within half a decibel it is path.
 struct Plans {
     Schedule path;

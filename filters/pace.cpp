@@ -202,13 +202,22 @@ RecordCheckSize Pace::check_size(const SurfaceRecordsPlan& plan) const {
             static_cast<std::uint32_t>(paths)};
 }
 
-bool Pace::wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan) const {
+bool Pace::wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan,
+                       bool knows_lamps) const {
+    // Of lamps paths know by chance what clusters know exactly, which this does not count.
+    constexpr double kOfLamps = 4;
     SurfaceRecordsPlan fewer = plan;
     fewer.edge_spp = static_cast<int>(plan.edge_spp / kPathWork);
+    fewer.edge_light = EdgeLight::paths;
     if (fewer.edge_spp < kLeastEdgeSpp) return false;
-    const double lost = here.samples * (edge_noise_share(fewer) / edge_noise_share(plan) - 1);
+    ErrorFindings then = here;
+    then.samples *= edge_noise_share(fewer) / edge_noise_share(plan);
+    const double lost = then.samples - here.samples;
     const double wrong = here.at_shared.error - here.at_shared.standard_error;
-    return (wrong - path_noise(here.at_shared, fewer)) * here.shared_pixels > lost;
+    if ((wrong - path_noise(here.at_shared, fewer)) * here.shared_pixels <= lost) return false;
+    if (!knows_lamps) return true;
+    return is_sure(here.at_shared) &&
+           expected_error(here, plan) > kOfLamps * expected_error(then, fewer);
 }
 
 double Pace::expected_error(const ErrorFindings& here, const SurfaceRecordsPlan& plan) const {

@@ -91,7 +91,8 @@ class Pace {
     /// How large a check of records may be, that is a small part of what time is left.
     [[nodiscard]] RecordCheckSize check_size(const SurfaceRecordsPlan& plan) const;
     /// Whether whole paths are better at edges than records, at the price of having fewer samples.
-    [[nodiscard]] bool wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan) const;
+    [[nodiscard]] bool wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan,
+                                   bool knows_lamps) const;
     /// Of the frame: a mean square in sRGB.
     [[nodiscard]] double expected_error(const ErrorFindings& here,
                                         const SurfaceRecordsPlan& plan) const;

@@ -201,8 +201,8 @@ class Band {
         const BandTrials trials = this->trials();
         choose_edge_spp(trials);
         ErrorFindings findings = trials.errors(*needed_);
-        // Of lamps paths know by chance what clusters know exactly.
-        if (tracer_.task.light_count == 0 && context_.pace->wants_paths(findings, plan_)) {
+        const bool knows_lamps = tracer_.task.light_count > 0;
+        if (context_.pace->wants_paths(findings, plan_, knows_lamps)) {
             plan_.edge_light = EdgeLight::paths;
             choose_edge_spp(trials);
             findings.samples = needed_->outlook(needy_, {plan_.edge_spp, plan_.pilot_spp}).error;

@@ -64,6 +64,9 @@ class Placement {
     }
 
   private:
+    // What a surface is like right beside another holds for less than a cell.
+    static constexpr float kBeside = 0.15f;
+
     struct Corner {
         int left, top;
     };
@@ -81,7 +84,9 @@ class Placement {
             if (block.object[i] < 0 || !reflects) return;
             const glm::vec3 normal(block.first_normal[0][i], block.first_normal[1][i],
                                    block.first_normal[2][i]);
-            offer({{x, y, 0}, block.object[i], normal, 1.0f, 1.0f - off_centre}, before, out);
+            const float beside = is_beside_other({x, y}, block.object[i]) ? kBeside : 0.0f;
+            offer({{x, y, 0}, block.object[i], normal, 1.0f, 1.0f - off_centre - beside}, before,
+                  out);
             return;
         }
         float total = 0;
@@ -96,6 +101,17 @@ class Placement {
                    c.count / total - off_centre},
                   before, out);
         }
+    }
+
+    [[nodiscard]] bool is_beside_other(Pixel at, std::int32_t object) const {
+        const RowRange rows = clusters_.rows();
+        const auto shows_other = [&](int x, int y) {
+            if (x < 0 || x >= clusters_.width() || y < rows.begin || y >= rows.end) return false;
+            return clusters_.list(x, y) != nullptr ||
+                   clusters_.block(x, y).object[x % kPilotPixels] != object;
+        };
+        return shows_other(at.x - 1, at.y) || shows_other(at.x + 1, at.y) ||
+               shows_other(at.x, at.y - 1) || shows_other(at.x, at.y + 1);
     }
 
     static void offer(const Candidate& candidate, std::size_t before, Candidates& out) {

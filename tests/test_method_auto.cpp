@@ -144,6 +144,17 @@ TEST_CASE("of methods that are equal within half a decibel, path is taken", "[au
     CHECK_FALSE(choose_schedule(found, rates, 1).takes_path);
 }
 
+TEST_CASE("where path tracing leaves nothing that could be seen, it is taken", "[auto]") {
+    PilotFindings found = usual_findings();
+    const CostRates rates = nominal_rates(3.4);
+    const double spp = plan_path(found, rates, 1).spp;
+    found.records = RecordErrors{};  // by far the better
+    found.path = PathErrors{6e-8 * spp / 16, 1};
+    CHECK(choose_schedule(found, rates, 1).takes_path);
+    found.path->at_16_spp *= 1.1;
+    CHECK_FALSE(choose_schedule(found, rates, 1).takes_path);
+}
+
 /// That what auto says it did gives the same bits. Returns its facts.
 nlohmann::json check_schedule(const MethodRequest& request) {
     const MethodRender made = render(find_method("auto"), request);
@@ -296,13 +307,20 @@ TEST_CASE("paths at edges are for records that are wrong there by more than path
     pace.choose_structure({14000, 1150, 8e-7, true, 6e-8, 4e-8}, plan);
     plan.edge_spp = 600;
     const auto wants = [&](double error, double standard_error, double path_noise) {
-        return pace.wants_paths({0.05, 7000, {error, standard_error, path_noise}, {}}, plan);
+        return pace.wants_paths({0.05, 7000, {error, standard_error, path_noise}, {}}, plan, false);
     };
     CHECK(wants(1e-4, 1e-5, 1e-2));
     CHECK_FALSE(wants(1e-4, 1e-5, 1));     // 200 paths leave more than records do
     CHECK_FALSE(wants(1e-4, 1e-4, 1e-2));  // it may be noise
     CHECK_FALSE(wants(1e-5, 1e-6, 1e-2));  // samples that are lost cost more
     CHECK_FALSE(wants(0, 0, 0));           // nothing is known
+    // Lamps that are known exactly are worth something: far less has to be left, for sure.
+    const auto wants_with_lamps = [&](double error, double standard_error) {
+        return pace.wants_paths({0.05, 7000, {error, standard_error, 1e-2}, {}}, plan, true);
+    };
+    CHECK_FALSE(wants_with_lamps(1e-4, 1e-5));
+    CHECK(wants_with_lamps(1e-3, 1e-4));
+    CHECK_FALSE(wants_with_lamps(1e-3, 4e-4));
     plan.edge_spp = 20;
     CHECK_FALSE(wants(1, 1e-5, 1e-2));  // too few to have a third of them
 }

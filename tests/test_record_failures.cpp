@@ -127,3 +127,27 @@ TEST_CASE("records right beside something else do not darken all that is around 
     CHECK(darkest < 0.04);
     CHECK(sum < 0.012);
 }
+
+TEST_CASE("records are not placed right beside something else where there is other room",
+          "[surface_records]") {
+    const Scene scene = repository_scene("failures/f09_thin_bar");
+    RenderSettings settings = small_settings({192, 192}, 1);
+    settings.max_depth = 3;
+    SurfaceRecordsPlan plan{16, 2048, 4, 0, 1024, 1024, 1.0, 0.15};
+    plan.edge_light = EdgeLight::paths;
+    const Image made = records(scene, settings, plan).frame.radiance;
+    CHECK(db(made, paths(scene, settings, 4096)) > 72);  // 67 so
+}
+
+TEST_CASE("paths show the ring of contact of a lamp right before its ceiling",
+          "[surface_records]") {
+    // A tenth of a pixel off, it hides the sky from what is right beside it.
+    const Scene scene = repository_scene("failures/f06_flush_emitter");
+    RenderSettings settings = small_settings({96, 96}, 1);
+    settings.max_depth = 3;
+    const Image reference = paths(scene, settings, 4096);
+    SurfaceRecordsPlan plan{32, 1024, 8, 0, 64, 64, 1.0, 0.15};
+    const double by_records = db(records(scene, settings, plan).frame.radiance, reference);
+    plan.edge_light = EdgeLight::paths;
+    CHECK(db(records(scene, settings, plan).frame.radiance, reference) > by_records + 10);
+}
