@@ -34,12 +34,14 @@ inline Cluster empty_cluster(const SampleLanes& sample, int lane, std::uint32_t 
     return cluster;
 }
 
-/// Sums of the lanes in a mask.
+/// Sums of the lanes in a mask, halves first.
 inline float sum_of(Float v, Mask mask) {
-    const Float kept = select(mask, v, Float{});
-    float sum = 0;
-    for (int i = 0; i < W; ++i) sum += kept[i];
-    return sum;
+    alignas(sizeof(Float)) float kept[W];
+    store(kept, select(mask, v, Float{}));
+    for (int half = W / 2; half > 0; half /= 2) {
+        for (int i = 0; i < half; ++i) kept[i] += kept[i + half];
+    }
+    return kept[0];
 }
 inline void add(float (&to)[3], const Float3& v, Mask mask) {
     to[0] += sum_of(v.x, mask);
@@ -68,6 +70,45 @@ inline void add_to_cluster(const TraceTask& task, const SampleLanes& sample, Mas
         sums.open += sum_of(sample.lights[i].open, mask);
         sums.seen += sum_of(sample.lights[i].seen, mask);
     }
+}
+
+inline void add_lane(float (&to)[3], const Float3& v, int lane) {
+    to[0] += v.x[lane];
+    to[1] += v.y[lane];
+    to[2] += v.z[lane];
+}
+
+/// Adds one sample to a cluster.
+inline void add_to_cluster(const TraceTask& task, const SampleLanes& sample, int lane,
+                           Cluster& cluster) {
+    cluster.count += 1;
+    if (sample.looked[lane] != 0) cluster.shadow_count += 1;
+    add_lane(cluster.emission, sample.emission, lane);
+    if (cluster.object < 0) return;
+    add_lane(cluster.position, sample.surface.position, lane);
+    add_lane(cluster.normal, sample.surface.shading_normal, lane);
+    add_lane(cluster.albedo, sample.surface.albedo, lane);
+    if (picks_lights(task)) {
+        add_lane(cluster.picked, sample.picked, lane);
+        cluster.picked_square += square_of(sample.picked)[lane];
+        return;
+    }
+    for (std::uint32_t i = 0; i < task.light_count; ++i) {
+        LightSums& sums = cluster.lights[i];
+        sums.exact += sample.lights[i].exact[lane];
+        sums.open += sample.lights[i].open[lane];
+        sums.seen += sample.lights[i].seen[lane];
+    }
+}
+
+/// Whether one sample is of a cluster.
+inline bool belongs(const SampleLanes& sample, int lane, const Cluster& cluster) {
+    if (sample.object[lane] != cluster.object) return false;
+    const Float3& normal = sample.surface.shading_normal;
+    const float cosine = normal.x[lane] * cluster.first_normal[0] +
+                         normal.y[lane] * cluster.first_normal[1] +
+                         normal.z[lane] * cluster.first_normal[2];
+    return cluster.object < 0 || cosine > kSameSide;
 }
 
 // ---------------------------------------------------------------- first samples of many pixels
@@ -136,15 +177,11 @@ inline void store(const PilotOutput& out, int at, const TraceTask& task, const P
 /// Counts one sample to another surface of its pixel than the first.
 inline void spill_lane(const TraceTask& task, const SampleLanes& sample, int lane, int pixel,
                        std::uint32_t number, PilotSpill& spill) {
-    Mask one{};
-    one[lane] = -1;
     int of_pixel = 0;
     for (int i = 0; i < spill.count; ++i) {
         if (spill.pixel[i] != pixel) continue;
-        Cluster& cluster = spill.clusters[i];
-        const Float3 normal = splat3(cluster.first_normal);
-        if (any(one & belongs(sample, Int{} + cluster.object, normal))) {
-            add_to_cluster(task, sample, one, cluster);
+        if (belongs(sample, lane, spill.clusters[i])) {
+            add_to_cluster(task, sample, lane, spill.clusters[i]);
             return;
         }
         ++of_pixel;
@@ -155,7 +192,7 @@ inline void spill_lane(const TraceTask& task, const SampleLanes& sample, int lan
     }
     spill.pixel[spill.count] = pixel;
     spill.clusters[spill.count] = empty_cluster(sample, lane, number);
-    add_to_cluster(task, sample, one, spill.clusters[spill.count++]);
+    add_to_cluster(task, sample, lane, spill.clusters[spill.count++]);
 }
 
 inline void pilot_packet(Tracer& tracer, const TraceTask& task, const PilotRange& range, int at,
@@ -280,6 +317,87 @@ std::uint64_t add_samples(const TraceTask& task, const PixelSamples& range, Clus
     for (std::uint32_t at = range.begin / kStep * kStep; at < range.end && !list.crowded;
          at += kStep)
         sample_packet(tracer, task, range, at, list);
+    return tracer.rays();
+}
+
+// ---------------------------------------------------------------- a few samples of many pixels
+
+/// Adds the sums of one pixel to its first surface.
+inline void add_sums(const TraceTask& task, const PilotLanes& sums, int lane, Cluster& cluster) {
+    cluster.count += sums.count[lane];
+    cluster.shadow_count += sums.shadow_count[lane];
+    add_lane(cluster.emission, sums.emission, lane);
+    if (cluster.object < 0) return;
+    add_lane(cluster.position, sums.position, lane);
+    add_lane(cluster.normal, sums.normal, lane);
+    add_lane(cluster.albedo, sums.albedo, lane);
+    if (picks_lights(task)) {
+        add_lane(cluster.picked, sums.picked, lane);
+        cluster.picked_square += sums.picked_square[lane];
+        return;
+    }
+    for (std::uint32_t i = 0; i < task.light_count; ++i) {
+        cluster.lights[i].exact += sums.lights[i].exact[lane];
+        cluster.lights[i].open += sums.lights[i].open[lane];
+        cluster.lights[i].seen += sums.lights[i].seen[lane];
+    }
+}
+
+/// One sample that hit another surface than its pixel's first.
+inline void add_other(const TraceTask& task, const SampleLanes& sample, int lane,
+                      std::uint32_t number, ClusterList& list) {
+    for (int k = 1; k < list.count; ++k) {
+        if (belongs(sample, lane, list.clusters[k]))
+            return add_to_cluster(task, sample, lane, list.clusters[k]);
+    }
+    if (list.count == kMostClusters) {
+        list.crowded = true;
+        return;
+    }
+    list.clusters[list.count] = empty_cluster(sample, lane, number);
+    add_to_cluster(task, sample, lane, list.clusters[list.count++]);
+}
+
+inline void few_packet(Tracer& tracer, const TraceTask& task, const FewSamples& range, int at,
+                       ClusterList* lists) {
+    Int x{}, y{};
+    Uint end{};
+    PilotLanes sums;
+    std::uint32_t last = range.begin;
+    for (int i = 0; i < W && at + i < range.count; ++i) {
+        const Cluster& first = lists[at + i].clusters[0];
+        x[i] = range.x[at + i];
+        y[i] = range.y[at + i];
+        end[i] = range.end[at + i];
+        last = range.end[at + i] > last ? range.end[at + i] : last;
+        sums.object[i] = first.object;
+        sums.first_normal.x[i] = first.first_normal[0];
+        sums.first_normal.y[i] = first.first_normal[1];
+        sums.first_normal.z[i] = first.first_normal[2];
+    }
+    for (std::uint32_t number = range.begin; number < last; ++number) {
+        const Mask active = (Mask)(splat(number) < end);
+        const PathRandom random(task, (Uint)(x + y * task.width), splat(number));
+        const Pair jitter = random.pair(0);
+        const Ray ray = tracer.primary_ray(jitter.u + __builtin_convertvector(x, Float),
+                                           jitter.v + __builtin_convertvector(y, Float));
+        SampleLanes sample = first_look(tracer, task, tracer.trace(ray, active), active);
+        look_at_lights(
+            tracer, task, random, [&](int) { return active; }, sample);
+        const Mask first = active & belongs(sample, sums.object, sums.first_normal);
+        add(sums, task, sample, first);
+        const Mask others = active & ~first;
+        for (int i = 0; any(others) && i < W; ++i) {
+            if (others[i] != 0) add_other(task, sample, i, number, lists[at + i]);
+        }
+    }
+    for (int i = 0; i < W && at + i < range.count; ++i)
+        add_sums(task, sums, i, lists[at + i].clusters[0]);
+}
+
+std::uint64_t add_few(const TraceTask& task, const FewSamples& range, ClusterList* lists) {
+    Tracer tracer(task);
+    for (int at = 0; at < range.count; at += W) few_packet(tracer, task, range, at, lists);
     return tracer.rays();
 }
 

@@ -107,6 +107,15 @@ struct PixelSamples {
     bool half_shadow;
 };
 
+/// Samples [begin, end) of pixels that are traced side by side.
+struct FewSamples {
+    std::int32_t count;  ///< pixels, 1 to kPilotPixels
+    std::int32_t x[kPilotPixels];
+    std::int32_t y[kPilotPixels];
+    std::uint32_t begin;
+    std::uint32_t end[kPilotPixels];
+};
+
 /// Paths from the surface that a sample of a pixel hits.
 struct RecordRange {
     std::int32_t x, y;
@@ -142,6 +151,9 @@ struct RecordKernel {
     std::uint64_t (*trace_pilot)(const TraceTask&, const PilotRange&, const PilotOutput&);
     /// Adds samples to what is known of a pixel.
     std::uint64_t (*add_samples)(const TraceTask&, const PixelSamples&, ClusterList&);
+    /// The same for pixels with fewer samples than a packet has room for. lists: by pixel, none of
+    /// them empty.
+    std::uint64_t (*add_few)(const TraceTask&, const FewSamples&, ClusterList* lists);
     std::uint64_t (*gather)(const TraceTask&, const RecordRange&, RecordLight&);
 };
 

@@ -349,7 +349,7 @@ std::uint64_t trace_centres(const TraceTask& task, const SampleRange& range, Fir
 namespace vecino {
 namespace {
 
-constexpr RecordKernel kRecordKernel = {trace_pilot, add_samples, gather_record};
+constexpr RecordKernel kRecordKernel = {trace_pilot, add_samples, add_few, gather_record};
 
 }  // namespace
 

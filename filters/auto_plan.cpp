@@ -84,8 +84,10 @@ double halved_share(int cell) {
 /// Of a needy pixel, in samples.
 double usual_edge_work(int edge_spp) {
     // With few samples they go to the neediest, so many at least to each.
-    const double sampled = std::min(1.0 * edge_spp / kLeastEdgeSpp, 1.0);
-    return sampled * (std::max(edge_spp, kLeastEdgeSpp) + kEdgeStart) + kSmoothingWork;
+    constexpr int kFewest = 4;
+    const double sampled = std::min(1.0 * edge_spp / kFewest, 1.0);
+    return sampled * edge_work(static_cast<std::uint32_t>(std::max(edge_spp, kFewest)), 0) +
+           kSmoothingWork;
 }
 
 /// Between two points of a curve, in powers; beyond the last as samples go.

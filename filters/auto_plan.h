@@ -34,7 +34,7 @@ double refined_share(const SurfaceRecordsPlan& plan, double growth);
 double bias_share(double cell);
 
 /// Its errors fall with samples and paths to these powers: Sobol points.
-constexpr double kEdgeSlope = 1.3, kRecordSlope = 1.25;
+constexpr double kEdgeSlope = 1.2, kRecordSlope = 1.25;
 
 /// Of a machine that takes so many times as long for everything.
 CostRates slower(const CostRates& rates, double times);

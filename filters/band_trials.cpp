@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec3.hpp>
+#include <span>
+#include <utility>
 
+#include "core/parallel.h"
 #include "core/timing.h"
 #include "filters/record_check.h"
 
@@ -20,6 +23,25 @@ double usual_mean(std::vector<double> values) {
     double sum = 0;
     for (const double value : values) sum += std::min(value, most);
     return sum / static_cast<double>(values.size());
+}
+
+/// Returns the light over pi that reaches records: their mean.
+glm::vec3 take_records(std::span<const RecordTrial> trials, PaceFindings& findings) {
+    constexpr double kFitNoise = 0.4;  // of a record's own, once it is fitted to those around
+    glm::vec3 light(0.0f);
+    int count = 0;
+    std::vector<double> noise;
+    for (const RecordTrial& trial : trials) {
+        if (trial.paths == 0) continue;  // it was not made
+        ++count;
+        light += (trial.light - light) / static_cast<float>(count);
+        findings.records_at_16 += (trial.records_at_16 - findings.records_at_16) / count;
+        findings.surfaces += (trial.surfaces - findings.surfaces) / count;
+        noise.insert(noise.end(), trial.noise.begin(), trial.noise.end());
+        findings.record_noise = std::pow(trial.paths / 512.0, kRecordSlope);
+    }
+    findings.record_noise *= kFitNoise * usual_mean(std::move(noise));
+    return light;
 }
 
 }  // namespace
@@ -60,24 +82,17 @@ double BandTrials::first_samples_s(int samples) const {
 
 PaceFindings BandTrials::structure() const {
     constexpr std::uint32_t kTrySamples = 32;
-    constexpr double kFitNoise = 0.4;  // of a record's own, once it is fitted to those around
     PaceFindings findings;
     findings.needy_pixels = needy_pixels_;
     glm::vec3 ambient(0.0f);
-    float trials = 0;
-    std::vector<double> noise;
     if (has_records(inputs_.tracer.task)) {
+        RecordTrial made[kMostTrials];
         findings.path_s = inputs_.pace.typical([&](int number) {
-            const RecordTrial made = try_records({inputs_.tracer, inputs_.clusters}, number);
-            findings.records_at_16 = made.records_at_16;
-            ++trials;
-            ambient += (made.light - ambient) / trials;
-            noise.insert(noise.end(), made.noise.begin(), made.noise.end());
-            findings.surfaces = made.surfaces;
-            findings.record_noise = std::pow(made.paths / 512.0, kRecordSlope);
-            return made.path_s;
+            RecordTrial& trial = made[number];
+            trial = try_records({inputs_.tracer, inputs_.clusters}, number);
+            return trial.path_s;
         });
-        findings.record_noise *= kFitNoise * usual_mean(std::move(noise));
+        ambient = take_records(made, findings);
     }
     const auto given = [this](std::size_t, std::size_t) {
         return static_cast<std::uint32_t>(inputs_.plan.pilot_spp) + kTrySamples;
@@ -102,7 +117,11 @@ std::vector<std::pair<int, EdgeCurve>> BandTrials::edge_curves(const glm::vec3& 
                                inputs_.rows, some);
     std::vector<std::pair<int, EdgeCurve>> curves;
     for (int spp = pilot_spp; spp <= std::max(Pace::kMostPilotSpp, pilot_spp); spp *= 2)
-        curves.emplace_back(spp, edge_curve(needed, some, spp));
+        curves.emplace_back(spp, EdgeCurve{});
+    for_each_block(curves.size(), 1, inputs_.tracer.threads, [&](BlockRange block) {
+        auto& [spp, curve] = curves[block.begin];
+        curve = edge_curve(needed, some, spp);
+    });
     return curves;
 }
 
@@ -129,7 +148,7 @@ EdgeCurve BandTrials::edge_curve(const NeededSamples& needed, const NeedyRows& s
 
 double BandTrials::edge_unit_s(const NeededSamples& needed) const {
     constexpr int kManySpp = 256;  // more take as long each
-    const int edge_spp = std::clamp(inputs_.plan.edge_spp, kLeastEdgeSpp, kManySpp);
+    const int edge_spp = std::min(inputs_.plan.edge_spp, kManySpp);
     const auto given = [&](std::size_t row, std::size_t i) {
         return needed.samples(row, i, edge_spp);
     };
@@ -138,11 +157,7 @@ double BandTrials::edge_unit_s(const NeededSamples& needed) const {
 
 /// Of one thread, by some of the pixels.
 double BandTrials::unit_s(int number, const Given& given) const {
-    struct Place {
-        NeedyPixel pixel;
-        int y;
-    };
-    std::vector<Place> places;
+    std::vector<NeedyPlace> places;
     // All trials together are a quarter of what there is to do, at most.
     const auto pixels = static_cast<std::size_t>(std::clamp(needy_pixels_ / 16, 16.0, 128.0));
     visit_some({number, pixels, 16}, [&](std::size_t r, std::size_t i) {
@@ -151,11 +166,9 @@ double BandTrials::unit_s(int number, const Given& given) const {
     });
     const PixelSampler sampler = this->sampler(inputs_.plan);
     double work = 0;
-    for (const Place& place : places) work += sampler.work(place.pixel, place.y);
+    for (const NeedyPlace& place : places) work += sampler.work(place);
     const ThreadStopwatch watch;
-    for (const Place& place : places) {
-        if (sampler.wants(place.pixel, place.y)) (void)sampler.sample(place.pixel, place.y);
-    }
+    sampler.sample(places, [](const NeedyPlace&, const SampledPixel&) {});
     return watch.seconds() / std::max(work, 1.0);
 }
 
@@ -167,7 +180,7 @@ double BandTrials::edge_work(const NeededSamples& needed, int edge_spp) const {
     visit_some({0, 1024, 1}, [&](std::size_t r, std::size_t i) {
         NeedyPixel pixel = inputs_.needy[r][i];
         pixel.samples = needed.samples(r, i, edge_spp);
-        work += sampler.work(pixel, inputs_.rows.begin + static_cast<int>(r));
+        work += sampler.work({pixel, inputs_.rows.begin + static_cast<int>(r)});
         if ((pixel.needs & kNeedsShadow) != 0) work += kSmoothingWork;
         ++count;
     });

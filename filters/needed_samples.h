@@ -46,10 +46,11 @@ class NeededSamples {
 
     /// Of one sample of a pixel.
     struct PixelSpread {
-        float srgb;      ///< standard deviation
-        bool is_fitted;  ///< less what fit_half_shadow() makes of the pixels around
-        bool
-            is_clipped;  ///< a share of it may be too bright to be shown: by one sample all or none
+        float srgb;          ///< standard deviation
+        bool is_fitted;      ///< less what fit_half_shadow() makes of the pixels around
+        bool is_clear_edge;  ///< between surfaces; emitters are looked at one by one
+        /// A share of it may be too bright to be shown: by one sample all or none.
+        bool is_clipped;
     };
 
   private:

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/parallel.h"
+
 namespace vecino {
 namespace {
 
@@ -16,8 +18,8 @@ constexpr double kMostPilotShare = 0.6;
 // Of what is left, kept back: clocks and other programs are not exact.
 constexpr double kReserve = 0.01;
 
-// Of a pixel, at the very end.
-constexpr double kResolve_s = 45e-9;
+// Of a pixel at the very end, and of a needy one to find out how needy, on one thread.
+constexpr double kResolve_s = 80e-9, kNeed_s = 180e-9;
 
 // As few paths of a record do; the least may take somewhat longer than there is time.
 constexpr int kLeastPaths = 64;
@@ -76,13 +78,14 @@ void Pace::choose_first(std::vector<BandRows>& bands, const std::vector<BandSurv
 
 double Pace::typical(const Trial& trial) const {
     constexpr double kShort_s = 0.15;
-    double seconds[] = {trial(0), trial(1)};
-    std::ranges::sort(seconds);
-    if (seconds_ < kShort_s) return 0.5 * (seconds[0] + seconds[1]);
-    double more[] = {trial(2), trial(3)};
-    std::ranges::sort(more);
+    const std::size_t trials = seconds_ < kShort_s ? 2 : kMostTrials;
+    double seconds[kMostTrials] = {};
+    for_each_block(trials, 1, threads_, [&](BlockRange block) {
+        seconds[block.begin] = trial(static_cast<int>(block.begin));
+    });
+    std::sort(seconds, seconds + trials);
     // Without the least and the most of four.
-    return 0.5 * (std::max(seconds[0], more[0]) + std::min(seconds[1], more[1]));
+    return 0.5 * (seconds[trials / 2 - 1] + seconds[trials / 2]);
 }
 
 void Pace::take_pilot(double work_s, double seconds, double look_s) {
@@ -156,6 +159,7 @@ void Pace::choose_structure(const PaceFindings& here, SurfaceRecordsPlan& plan) 
     if (!found_.records) found_.records = kUsualErrors;
     take_records(here);
     rates_.first_sample_s = 0;  // they are done
+    rates_.pixel_s = (kResolve_s + kNeed_s * here.needy_pixels / found_.pixels) * per_work_s();
     rates_.record_path_s = here.path_s * per_work_s();
     rates_.edge_sample_s = here.sample_s * per_work_s();
     const int pilot_spp = plan.pilot_spp;
@@ -209,7 +213,7 @@ bool Pace::wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan
     SurfaceRecordsPlan fewer = plan;
     fewer.edge_spp = static_cast<int>(plan.edge_spp / kPathWork);
     fewer.edge_light = EdgeLight::paths;
-    if (fewer.edge_spp < kLeastEdgeSpp) return false;
+    if (fewer.edge_spp < kOwnPacketSpp) return false;
     ErrorFindings then = here;
     then.samples *= edge_noise_share(fewer) / edge_noise_share(plan);
     const double lost = then.samples - here.samples;
@@ -238,7 +242,7 @@ void Pace::choose_edges(const std::function<double(int)>& cost, double unit_s,
     const double per_unit_s = unit_s * per_work_s();
     // Records that the rest has fewer of do not take as long there.
     until_s_ += (watch_.seconds() - records_from_s_) * (1 - 1 / record_density_);
-    const double left = needy_density_ * (left_s() - found_.pixels * kResolve_s);
+    const double left = needy_density_ * (left_s() - found_.pixels * kResolve_s * per_work_s());
     const double grace = needy_density_ * std::max(kGraceShare * until_s_, kGrace_s);
     const auto most_in = [&](double seconds) {
         int low = 1, high = kMostEdgeSpp;
@@ -248,8 +252,9 @@ void Pace::choose_edges(const std::function<double(int)>& cost, double unit_s,
         }
         return low;
     };
+    constexpr int kWorthwhile = 8;
     // Records may have taken longer than was thought: then it pays to be a little late.
-    const int due = std::max(plan.edge_spp / 2, kLeastEdgeSpp);
+    const int due = std::max(plan.edge_spp / 2, kWorthwhile);
     const double late_s = std::max(left + grace, 0.5 * grace);
     plan.edge_spp = std::max(most_in(left), std::min(most_in(late_s), due));
 }

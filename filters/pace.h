@@ -19,9 +19,11 @@
 namespace vecino {
 
 /// Work done on a few places of a frame to see how long it takes, and thrown away. Takes the number
-/// of the trial, for other places each time. Returns seconds of one thread for one unit of work: a
-/// thread's own time, since what other programs take of so short a while says nothing.
+/// of the trial, for other places each time; trials may run side by side. Returns seconds of one
+/// thread for one unit of work: a thread's own time, since what other programs take of so short a
+/// while says nothing.
 using Trial = std::function<double(int)>;
+constexpr std::size_t kMostTrials = 4;
 
 /// What is known once first samples are there, and a few more were tried.
 struct PaceFindings {

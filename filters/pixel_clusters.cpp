@@ -25,11 +25,6 @@ void PixelClusters::begin(RowRange rows) {
     lists_.assign(count, {});
 }
 
-const ClusterList* PixelClusters::list(int x, int y) const {
-    const std::int32_t index = list_index_[pixel_index(x, y)];
-    return index < 0 ? nullptr : &lists_[row(y)][static_cast<std::size_t>(index)];
-}
-
 ClusterList PixelClusters::clusters(int x, int y) const {
     const ClusterList* const found = list(x, y);
     if (found != nullptr) return *found;

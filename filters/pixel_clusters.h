@@ -50,7 +50,14 @@ class PixelClusters {
     }
 
     /// Null for a pixel whose samples all hit one surface and that has asked for no list.
-    [[nodiscard]] const ClusterList* list(int x, int y) const;
+    [[nodiscard]] const ClusterList* list(int x, int y) const {
+        const std::int32_t index = *list_numbers(x, y);
+        return index < 0 ? nullptr : &lists_[row(y)][static_cast<std::size_t>(index)];
+    }
+    /// Of the pixels of a row from one on: negative for those that have none.
+    [[nodiscard]] const std::int32_t* list_numbers(int x, int y) const {
+        return &list_index_[pixel_index(x, y)];
+    }
     /// What all samples of a pixel saw.
     [[nodiscard]] ClusterList clusters(int x, int y) const;
     /// Gives a pixel its clusters. Threads may do so in different rows.

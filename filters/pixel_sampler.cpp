@@ -3,13 +3,32 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <utility>
 
 #include "filters/surface_records_stages.h"
 
 namespace vecino {
 
-SampledPixel PixelSampler::sample(const NeedyPixel& pixel, int y) const {
-    const auto pilot = static_cast<std::uint32_t>(inputs_.plan.pilot_spp);
+void PixelSampler::sample(std::span<const NeedyPlace> places, const Take& take) const {
+    Few few[std::bit_width(unsigned{kOwnPacketSpp})];  // by the power of two below their samples
+    for (const NeedyPlace& place : places) {
+        if (!wants(place)) continue;
+        if (!shares_packets(place)) {
+            take(place, sample_one(place));
+            continue;
+        }
+        Few& queue = few[std::bit_width(place.pixel.samples) - 1];
+        queue.places[queue.count++] = place;
+        if (queue.count == kPilotPixels) sample_few(queue, take);
+    }
+    for (Few& queue : few) {
+        if (queue.count > 0) sample_few(queue, take);
+    }
+}
+
+SampledPixel PixelSampler::sample_one(const NeedyPlace& place) const {
+    const auto& [pixel, y] = place;
     const RecordTracer& tracer = inputs_.tracer;
     SampledPixel out{};
     out.clusters = inputs_.clusters.clusters(pixel.x, y);
@@ -17,35 +36,70 @@ SampledPixel PixelSampler::sample(const NeedyPixel& pixel, int y) const {
     if (paths_of(pixel, out.clusters.crowded) == 0) {
         out.rays += tracer.kernel.add_samples(
             tracer.task,
-            {pixel.x, y, pilot, pixel.samples, known_surface(pixel, out.clusters),
+            {pixel.x, y, pilot_spp(), pixel.samples, known_surface(pixel, out.clusters),
              (pixel.needs & kNeedsShadow) != 0},
             out.clusters);
-        out.samples = pixel.samples - pilot;
+        out.samples = pixel.samples - pilot_spp();
     }
-    // By now it may be crowded.
-    if (const std::uint32_t paths = paths_of(pixel, out.clusters.crowded); paths > 0) {
-        trace_paths({pixel.x, y}, paths, out);
-    } else {
-        for (int k = before; k < out.clusters.count; ++k) adopt(k, {pixel.x, y}, out);
-    }
+    finish(place, before, out);
     return out;
 }
 
-bool PixelSampler::is_crowded(const NeedyPixel& pixel, int y) const {
-    const ClusterList* const list = inputs_.clusters.list(pixel.x, y);
+void PixelSampler::sample_few(Few& few, const Take& take) const {
+    FewSamples range;
+    ClusterList lists[kPilotPixels];
+    int before[kPilotPixels];
+    range.count = few.count;
+    range.begin = pilot_spp();
+    for (int i = 0; i < few.count; ++i) {
+        const auto& [pixel, y] = few.places[i];
+        range.x[i] = pixel.x;
+        range.y[i] = y;
+        range.end[i] = pixel.samples;
+        lists[i] = inputs_.clusters.clusters(pixel.x, y);
+        before[i] = lists[i].count;
+    }
+    const RecordTracer& tracer = inputs_.tracer;
+    std::uint64_t rays = tracer.kernel.add_few(tracer.task, range, lists);
+    for (int i = 0; i < few.count; ++i) {
+        SampledPixel out{};
+        out.clusters = lists[i];
+        out.rays = std::exchange(rays, 0);  // of all, counted once
+        out.samples = few.places[i].pixel.samples - pilot_spp();
+        finish(few.places[i], before[i], out);
+        take(few.places[i], out);
+    }
+    few.count = 0;
+}
+
+/// What no cluster is known well enough for.
+void PixelSampler::finish(const NeedyPlace& place, int known_clusters, SampledPixel& out) const {
+    const Pixel at{place.pixel.x, place.y};
+    // By now it may be crowded.
+    if (const std::uint32_t paths = paths_of(place.pixel, out.clusters.crowded); paths > 0) {
+        trace_paths(at, paths, out);
+    } else {
+        for (int k = known_clusters; k < out.clusters.count; ++k) adopt(k, at, out);
+    }
+}
+
+bool PixelSampler::is_crowded(const NeedyPlace& place) const {
+    const ClusterList* const list = inputs_.clusters.list(place.pixel.x, place.y);
     return list != nullptr && list->crowded;
 }
 
-bool PixelSampler::wants(const NeedyPixel& pixel, int y) const {
-    const auto pilot = static_cast<std::uint32_t>(inputs_.plan.pilot_spp);
-    return pixel.samples > pilot || is_crowded(pixel, y);
+bool PixelSampler::wants(const NeedyPlace& place) const {
+    return place.pixel.samples > pilot_spp() || is_crowded(place);
 }
 
-double PixelSampler::work(const NeedyPixel& pixel, int y) const {
-    if (!wants(pixel, y)) return 0;
-    const auto pilot = static_cast<std::uint32_t>(inputs_.plan.pilot_spp);
-    const std::uint32_t paths = paths_of(pixel, is_crowded(pixel, y));
-    return (paths > 0 ? kPathWork * paths : pixel.samples - pilot) + kEdgeStart;
+bool PixelSampler::shares_packets(const NeedyPlace& place) const {
+    return place.pixel.samples < kOwnPacketSpp && paths_of(place.pixel, is_crowded(place)) == 0;
+}
+
+double PixelSampler::work(const NeedyPlace& place) const {
+    if (!wants(place)) return 0;
+    const std::uint32_t paths = paths_of(place.pixel, is_crowded(place));
+    return paths > 0 ? kPathWork * paths + kEdgeStart : edge_work(place.pixel.samples, pilot_spp());
 }
 
 /// Plain paths of a pixel; none where records and clusters do.
@@ -91,11 +145,9 @@ void PixelSampler::adopt(int number, Pixel at, SampledPixel& out) const {
     const bool reflects = means.albedo.x + means.albedo.y + means.albedo.z > 0;
     const RecordTracer& tracer = inputs_.tracer;
     if (!has_records(tracer.task) || cluster.object < 0 || !reflects) return;
+    const SurfacePoint point{at.x, at.y, cluster.object, means.position, means.normal};
+    if (is_near_record(inputs_.records, point)) return;
     Orphan orphan{at.x, number, {}};
-    if (record_light(inputs_.records, {at.x, at.y, cluster.object, means.position, means.normal},
-                     orphan.light)) {
-        return;
-    }
     RecordLight light;
     out.rays +=
         tracer.kernel.gather(tracer.task,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Further samples of one needy pixel.
+// Further samples of needy pixels.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/frame_planes.h"
@@ -13,6 +15,11 @@
 #include "filters/surface_records.h"
 
 namespace vecino {
+
+struct NeedyPlace {
+    NeedyPixel pixel;
+    int y;
+};
 
 /// What further samples made of a pixel.
 struct SampledPixel {
@@ -35,19 +42,33 @@ class PixelSampler {
 
     explicit PixelSampler(const Inputs& inputs) : inputs_(inputs) {}
 
-    /// Whether a pixel gets any samples.
-    [[nodiscard]] bool wants(const NeedyPixel& pixel, int y) const;
+    /// Takes what became of a pixel.
+    using Take = std::function<void(const NeedyPlace&, const SampledPixel&)>;
 
-    /// Precondition: that it wants any. Changes nothing but what it returns: it may be called to
-    /// see how long it takes.
-    [[nodiscard]] SampledPixel sample(const NeedyPixel& pixel, int y) const;
+    /// Samples those that want any, in no order. Changes nothing: it may be called to see how long
+    /// it takes.
+    void sample(std::span<const NeedyPlace> places, const Take& take) const;
 
-    /// About what sample() does, in samples of a pixel that is not crowded.
-    [[nodiscard]] double work(const NeedyPixel& pixel, int y) const;
+    /// About what that takes for one, in samples of a pixel that is not crowded.
+    [[nodiscard]] double work(const NeedyPlace& place) const;
 
   private:
-    [[nodiscard]] bool is_crowded(const NeedyPixel& pixel, int y) const;
+    /// Pixels that share packets, with as many samples each.
+    struct Few {
+        int count = 0;
+        NeedyPlace places[kPilotPixels];
+    };
+
+    [[nodiscard]] std::uint32_t pilot_spp() const {
+        return static_cast<std::uint32_t>(inputs_.plan.pilot_spp);
+    }
+    [[nodiscard]] bool is_crowded(const NeedyPlace& place) const;
+    [[nodiscard]] bool wants(const NeedyPlace& place) const;
+    [[nodiscard]] bool shares_packets(const NeedyPlace& place) const;
     [[nodiscard]] std::uint32_t paths_of(const NeedyPixel& pixel, bool crowded) const;
+    [[nodiscard]] SampledPixel sample_one(const NeedyPlace& place) const;
+    void sample_few(Few& few, const Take& take) const;
+    void finish(const NeedyPlace& place, int known_clusters, SampledPixel& out) const;
     void trace_paths(Pixel at, std::uint32_t paths, SampledPixel& out) const;
     [[nodiscard]] std::int32_t known_surface(const NeedyPixel& pixel,
                                              const ClusterList& list) const;

@@ -138,26 +138,34 @@ class Band {
     }
 
     void add_samples() {
+        constexpr std::size_t kRows = 4;  // pixels of several fill the packets that they share
         const PixelSampler sampler = this->sampler();
         std::atomic<std::uint64_t> rays = 0, samples = 0;
-        for_each_row(rows_, [&](int y) {
-            RowExceptions& exceptions = exceptions_[row(y)];
-            for (const NeedyPixel& pixel : needy_[row(y)]) {
-                if (!sampler.wants(pixel, y)) continue;
-                const SampledPixel made = sampler.sample(pixel, y);
+        for_each_block(needy_.size(), kRows, tracer_.threads, [&](BlockRange block) {
+            std::vector<NeedyPlace> places;
+            for (std::size_t r = block.begin; r < block.end; ++r) {
+                for (const NeedyPixel& pixel : needy_[r])
+                    places.push_back({pixel, rows_.begin + static_cast<int>(r)});
+            }
+            sampler.sample(places, [&](const NeedyPlace& place, const SampledPixel& made) {
                 rays += made.rays;
                 samples += made.samples;
-                if (made.traced) {
-                    exceptions.traced.push_back(*made.traced);
-                } else {
-                    clusters_.store(pixel.x, y, made.clusters);
-                }
-                exceptions.orphans.insert(exceptions.orphans.end(), made.orphans.begin(),
-                                          made.orphans.end());
-            }
+                take(place, made);
+            });
         });
         out_.render.statistics.rays += rays;
         out_.render.statistics.samples += samples;
+    }
+
+    void take(const NeedyPlace& place, const SampledPixel& made) {
+        RowExceptions& exceptions = exceptions_[row(place.y)];
+        if (made.traced) {
+            exceptions.traced.push_back(*made.traced);
+        } else {
+            clusters_.store(place.pixel.x, place.y, made.clusters);
+        }
+        exceptions.orphans.insert(exceptions.orphans.end(), made.orphans.begin(),
+                                  made.orphans.end());
     }
 
     void resolve() {

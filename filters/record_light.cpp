@@ -92,6 +92,17 @@ bool record_light(const RecordMap& map, const SurfacePoint& point, RecordValue& 
     return Blend(map, point).run(light);
 }
 
+bool is_near_record(const RecordMap& map, const SurfacePoint& point) {
+    if (map.levels.empty()) return false;
+    const RecordLevel& level = map.levels[finest_level(map, point.x, point.y)];
+    for (const Record& record : level.at(point.x / level.cell(), point.y / level.cell())) {
+        if (record.object == point.object && glm::dot(record.normal_world, point.normal_world) > 0)
+            return true;
+    }
+    RecordValue light;
+    return record_light(map, point, light);
+}
+
 void rough_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light) {
     constexpr float kSameSide = 0.7f;  // cosine between normals
     light = {};

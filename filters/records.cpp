@@ -10,6 +10,7 @@
 #include "core/color.h"
 #include "core/parallel.h"
 #include "core/timing.h"
+#include "filters/record_placement.h"
 #include "filters/surface_records_stages.h"
 
 namespace vecino {
@@ -26,133 +27,12 @@ RecordLevel::RecordLevel(int cell, int width, RowRange rows)
 
 namespace {
 
-constexpr std::size_t kMostRecords = 8;  ///< of one cell
-constexpr float kSameSurface = 0.7f;     ///< cosine between normals of one side of a surface
-constexpr float kLeastGrazing = 0.15f;   ///< beyond, footprints do not grow
+constexpr float kLeastGrazing = 0.15f;  ///< beyond, footprints do not grow
 // Cells are halved where normals turn by more than 14 degrees away from the record's.
 constexpr float kCurved = 0.97f;
 
 glm::vec3 vector(const float (&v)[3]) {
     return {v[0], v[1], v[2]};
-}
-
-/// Where a record could be.
-struct Candidate {
-    RecordSeed seed;
-    std::int32_t object;
-    glm::vec3 normal;
-    float least_cosine = 1.0f;
-    float score;
-};
-
-using Candidates = std::vector<Candidate>;
-
-/// The best place for each surface of a cell: most of a pixel, close to the middle.
-class Placement {
-  public:
-    Placement(const PixelClusters& clusters, int cell) : clusters_(clusters), cell_(cell) {}
-
-    void place(int column, int row, Candidates& out) {
-        const std::size_t before = out.size();
-        const RowRange rows = clusters_.rows();
-        const int left = column * cell_, top = row * cell_;
-        const int right = std::min(left + cell_, clusters_.width());
-        const int bottom = std::min(top + cell_, rows.end);
-        for (int y = std::max(top, rows.begin); y < bottom; ++y) {
-            for (int x = left; x < right; ++x) consider(x, y, {left, top}, before, out);
-        }
-    }
-
-  private:
-    // What a surface is like right beside another holds for less than a cell.
-    static constexpr float kBeside = 0.15f;
-
-    struct Corner {
-        int left, top;
-    };
-
-    void consider(int x, int y, Corner corner, std::size_t before, Candidates& out) const {
-        const float half = 0.5f * static_cast<float>(cell_);
-        const float dx = (static_cast<float>(x - corner.left) + 0.5f) / half - 1.0f;
-        const float dy = (static_cast<float>(y - corner.top) + 0.5f) / half - 1.0f;
-        const float off_centre = 0.25f * (dx * dx + dy * dy);
-        const ClusterList* const list = clusters_.list(x, y);
-        if (list == nullptr) {
-            const PilotBlock& block = clusters_.block(x, y);
-            const int i = x % kPilotPixels;
-            const bool reflects = block.albedo[0][i] + block.albedo[1][i] + block.albedo[2][i] > 0;
-            if (block.object[i] < 0 || !reflects) return;
-            const glm::vec3 normal(block.first_normal[0][i], block.first_normal[1][i],
-                                   block.first_normal[2][i]);
-            const float beside = is_beside_other({x, y}, block.object[i]) ? kBeside : 0.0f;
-            offer({{x, y, 0}, block.object[i], normal, 1.0f, 1.0f - off_centre - beside}, before,
-                  out);
-            return;
-        }
-        float total = 0;
-        for (int k = 0; k < list->count; ++k) total += list->clusters[k].count;
-        for (int k = 0; k < list->count; ++k) {
-            const Cluster& c = list->clusters[k];
-            if (c.object < 0 || c.albedo[0] + c.albedo[1] + c.albedo[2] <= 0) continue;
-            offer({{x, y, c.first_sample},
-                   c.object,
-                   vector(c.first_normal),
-                   1.0f,
-                   c.count / total - off_centre},
-                  before, out);
-        }
-    }
-
-    [[nodiscard]] bool is_beside_other(Pixel at, std::int32_t object) const {
-        const RowRange rows = clusters_.rows();
-        const auto shows_other = [&](int x, int y) {
-            if (x < 0 || x >= clusters_.width() || y < rows.begin || y >= rows.end) return false;
-            return clusters_.list(x, y) != nullptr ||
-                   clusters_.block(x, y).object[x % kPilotPixels] != object;
-        };
-        return shows_other(at.x - 1, at.y) || shows_other(at.x + 1, at.y) ||
-               shows_other(at.x, at.y - 1) || shows_other(at.x, at.y + 1);
-    }
-
-    static void offer(const Candidate& candidate, std::size_t before, Candidates& out) {
-        for (std::size_t i = before; i < out.size(); ++i) {
-            Candidate& held = out[i];
-            const float cosine = glm::dot(held.normal, candidate.normal);
-            if (held.object != candidate.object || cosine < kSameSurface) continue;
-            const float least = std::min(held.least_cosine, cosine);
-            if (candidate.score > held.score) held = candidate;
-            held.least_cosine = least;
-            return;
-        }
-        if (out.size() - before < kMostRecords) out.push_back(candidate);
-    }
-
-    const PixelClusters& clusters_;
-    int cell_;
-};
-
-/// Candidates of the active cells, row by row; fills in where each cell's records begin.
-Candidates place_records(const PixelClusters& clusters, RecordLevel& level, int threads) {
-    const RowRange rows = level.rows();
-    const auto count = static_cast<std::size_t>(rows.end - rows.begin);
-    std::vector<Candidates> by_row(count);
-    for_each_block(count, 1, threads, [&](BlockRange block) {
-        Placement placement(clusters, level.cell());
-        for (std::size_t r = block.begin; r < block.end; ++r) {
-            const int row = rows.begin + static_cast<int>(r);
-            for (int column = 0; column < level.columns(); ++column) {
-                const std::size_t before = by_row[r].size();
-                if (level.is_active(column, row)) placement.place(column, row, by_row[r]);
-                level.first[level.index(column, row) + 1] =
-                    static_cast<std::uint32_t>(by_row[r].size() - before);
-            }
-        }
-    });
-    for (std::size_t i = 1; i < level.first.size(); ++i) level.first[i] += level.first[i - 1];
-    Candidates all;
-    all.reserve(level.first.back());
-    for (const Candidates& row : by_row) all.insert(all.end(), row.begin(), row.end());
-    return all;
 }
 
 /// What a pixel is wide, per distance from the camera.

@@ -109,12 +109,12 @@ std::size_t count_records(const RecordInputs& inputs, int cell);
 
 /// Records of a few cells, to see how long they take.
 struct RecordTrial {
-    double records_at_16;       ///< of all cells, were their sides 16 pixels; extrapolated
-    double path_s;              ///< of one thread, by paths + kRecordStart
+    double records_at_16 = 0;   ///< of all cells, were their sides 16 pixels; extrapolated
+    double path_s = 0;          ///< of one thread, by paths + kRecordStart
     std::vector<double> noise;  ///< by record: square in sRGB of what its noise adds to pixels
-    int paths;                  ///< of each
-    glm::vec3 light;            ///< that reaches them, over pi: their mean
-    double surfaces;            ///< of a cell that has any
+    int paths = 0;              ///< of each
+    glm::vec3 light{0.0f};      ///< that reaches them, over pi: their mean
+    double surfaces = 0;        ///< of a cell that has any
 };
 RecordTrial try_records(const RecordInputs& inputs, int number);
 
@@ -138,7 +138,10 @@ struct SurfacePoint {
 /// no record is near.
 bool record_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light);
 
-/// The same in a fraction of the time, as good as to say how much light there is about: the mean of
+/// Whether there is one.
+bool is_near_record(const RecordMap& map, const SurfacePoint& point);
+
+/// Light in a fraction of the time, as good as to say how much light there is about: the mean of
 /// the records of the point's own cell. Where it has none, as record_light().
 void rough_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light);
 

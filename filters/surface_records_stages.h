@@ -3,6 +3,7 @@
 // The stages of the method surface_records, for those who want to know what each takes.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -15,12 +16,19 @@ class Pace;
 
 constexpr double kPathWork = 3;  ///< of a whole path of a pixel, held against a sample of it
 
-/// Further samples of a needy pixel that gets any. Fewer save little time and cost much.
-constexpr int kLeastEdgeSpp = 16;
+/// Samples of a needy pixel that fill packets of its own. With fewer, pixels share packets.
+constexpr int kOwnPacketSpp = 16;
 
 // What a stage of surface_records costs before its first sample, in samples: measured at 512x512,
 // and scene by scene much the same.
 constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 6;
+
+/// What further samples of a needy pixel take, where there were so many first ones: in samples of
+/// many.
+constexpr double edge_work(std::uint32_t samples, std::uint32_t first) {
+    constexpr double kFewStart = 4;
+    return samples - first + (samples < kOwnPacketSpp ? kFewStart : kEdgeStart);
+}
 
 /// What half-shadow takes to smooth, in samples of a needy pixel.
 constexpr double kSmoothingWork = 2.5;
