@@ -344,6 +344,7 @@ std::uint64_t trace_centres(const TraceTask& task, const SampleRange& range, Fir
 
 // What builds on all of the above.
 #include "core/cluster_lanes.h"
+#include "core/further_lanes.h"
 #include "core/gather_lanes.h"
 
 namespace vecino {

@@ -8,6 +8,7 @@
 
 #include "filters/pixel_needs.h"
 #include "filters/records.h"
+#include "filters/sample_share.h"
 
 namespace vecino {
 
@@ -43,15 +44,6 @@ class NeededSamples {
         std::size_t one_of = 1;
     };
     [[nodiscard]] Outlook outlook(const NeedyRows& needy, const Question& question) const;
-
-    /// Of one sample of a pixel.
-    struct PixelSpread {
-        float srgb;          ///< standard deviation
-        bool is_fitted;      ///< less what fit_half_shadow() makes of the pixels around
-        bool is_clear_edge;  ///< between surfaces; emitters are looked at one by one
-        /// A share of it may be too bright to be shown: by one sample all or none.
-        bool is_clipped;
-    };
 
   private:
     std::vector<std::vector<PixelSpread>> spreads_;
