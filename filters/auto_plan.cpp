@@ -37,8 +37,9 @@ struct Structure {
     int cell, levels;
     double fit_sigma, refine_tau;
 };
-constexpr Structure kStructures[] = {{16, 0, 1.0, 0.15}, {8, 0, 0.85, 0.15}, {8, 1, 0.85, 0.15},
-                                     {8, 2, 0.85, 0.15}, {4, 1, 1.0, 0.15},  {4, 2, 1.0, 0.2}};
+constexpr Structure kStructures[] = {{16, 0, 1.0, 0.15}, {12, 0, 0.85, 0.15}, {8, 0, 0.85, 0.15},
+                                     {8, 1, 0.85, 0.15}, {8, 2, 0.85, 0.15},  {4, 1, 1.0, 0.15},
+                                     {4, 2, 1.0, 0.2}};
 constexpr double kPathsPerSample[] = {1, 2, 4, 8, 16, 32};
 
 // Records of fewer paths are not worth their place.
