@@ -209,7 +209,7 @@ RecordCheckSize Pace::check_size(const SurfaceRecordsPlan& plan) const {
 bool Pace::wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan,
                        bool knows_lamps) const {
     // Of lamps paths know by chance what clusters know exactly, which this does not count.
-    constexpr double kOfLamps = 4;
+    constexpr double kOfLamps = 2;
     SurfaceRecordsPlan fewer = plan;
     fewer.edge_spp = static_cast<int>(plan.edge_spp / kPathWork);
     fewer.edge_light = EdgeLight::paths;
