@@ -11,9 +11,6 @@ namespace {
 
 // ---------------------------------------------------------------- sums of single samples
 
-inline float lane_of(const Float& v, int lane) {
-    return v[lane];
-}
 inline void put_lane(float (&to)[3], const Float3& v, int lane) {
     to[0] = v.x[lane];
     to[1] = v.y[lane];

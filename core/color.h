@@ -31,6 +31,9 @@ inline std::uint8_t quantise_8bit(float encoded) {
 }
 
 /// Of linear radiance.
+inline float luminance(float r, float g, float b) {
+    return 0.2126f * r + 0.7152f * g + 0.0722f * b;
+}
 inline double luminance(const float (&rgb)[3]) {
     return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
            0.0722 * static_cast<double>(rgb[2]);

@@ -117,9 +117,16 @@ inline void add_sums(const TraceTask& task, const PilotLanes& sums, int lane, Cl
     }
 }
 
+/// Where a few samples come from and go to.
+struct FewInputs {
+    const TraceTask& task;
+    const FewSamples& range;
+    ClusterList* lists;
+};
+
 /// One sample that hit another surface than its pixel's first.
 inline void add_other(const TraceTask& task, const SampleLanes& sample, int lane,
-                      std::uint32_t number, ClusterList& list) {
+                      ClusterList& list, std::uint32_t number) {
     for (int k = 1; k < list.count; ++k) {
         if (belongs(sample, lane, list.clusters[k]))
             return add_to_cluster(task, sample, lane, list.clusters[k]);
@@ -132,8 +139,8 @@ inline void add_other(const TraceTask& task, const SampleLanes& sample, int lane
     add_to_cluster(task, sample, lane, list.clusters[list.count++]);
 }
 
-inline void few_packet(Tracer& tracer, const TraceTask& task, const FewSamples& range, int at,
-                       ClusterList* lists) {
+inline void few_packet(Tracer& tracer, const FewInputs& inputs, int at) {
+    const auto& [task, range, lists] = inputs;
     Int x{}, y{};
     Uint end{};
     PilotLanes sums;
@@ -162,7 +169,7 @@ inline void few_packet(Tracer& tracer, const TraceTask& task, const FewSamples& 
         add(sums, task, sample, first);
         const Mask others = active & ~first;
         for (int i = 0; any(others) && i < W; ++i) {
-            if (others[i] != 0) add_other(task, sample, i, number, lists[at + i]);
+            if (others[i] != 0) add_other(task, sample, i, lists[at + i], number);
         }
     }
     for (int i = 0; i < W && at + i < range.count; ++i)
@@ -171,7 +178,7 @@ inline void few_packet(Tracer& tracer, const TraceTask& task, const FewSamples& 
 
 std::uint64_t add_few(const TraceTask& task, const FewSamples& range, ClusterList* lists) {
     Tracer tracer(task);
-    for (int at = 0; at < range.count; at += W) few_packet(tracer, task, range, at, lists);
+    for (int at = 0; at < range.count; at += W) few_packet(tracer, {task, range, lists}, at);
     return tracer.rays();
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -77,6 +78,13 @@ Json read_run(const std::string& path) {
     return run;
 }
 
+/// One that the fewest of the others have.
+int rarest_colour(const std::vector<MethodStyle>& styles) {
+    int count[kColours + 1] = {};
+    for (const MethodStyle& style : styles) ++count[style.colour];
+    return static_cast<int>(std::min_element(count + 1, std::end(count)) - count);
+}
+
 std::vector<MethodStyle> method_styles(const std::vector<GroupSummary>& groups) {
     std::vector<std::string> names;
     for (const Scheme& scheme : all_schemes()) names.emplace_back(scheme.name);
@@ -87,14 +95,16 @@ std::vector<MethodStyle> method_styles(const std::vector<GroupSummary>& groups) 
         const bool is_special = group.method == "path" || group.method == kCeiling;
         if (!known && !is_special) names.push_back(group.method);
     }
-    // A scheme keeps its looks whichever others a run holds.
-    std::vector<MethodStyle> styles{{"path", kPathShape, 0}};
+    // A scheme keeps its looks whichever others a run holds; others get what is left.
+    std::vector<MethodStyle> styles;
+    if (used.contains("path")) styles.push_back({"path", kPathShape, 0});
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto colour = static_cast<int>(i % kColours) + 1;
+        if (!used.contains(names[i])) continue;
+        const bool is_scheme = i < all_schemes().size();
+        const int colour = is_scheme ? static_cast<int>(i % kColours) + 1 : rarest_colour(styles);
         styles.push_back({names[i], kShapes[i % std::size(kShapes)], colour});
     }
-    styles.push_back({kCeiling, kCeilingShape, 0});
-    std::erase_if(styles, [&](const MethodStyle& style) { return !used.contains(style.method); });
+    if (used.contains(kCeiling)) styles.push_back({kCeiling, kCeilingShape, 0});
     return styles;
 }
 

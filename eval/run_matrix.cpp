@@ -107,20 +107,25 @@ class Runner {
             row.value("params", nlohmann::json()) == cell.parameters_json() &&
             row.value("reference", nlohmann::json()) == reference_json(matrix_, cell);
         if (!same_question) return CellState::missing;
-        if (row.value("status", nlohmann::json()) != "ok") return CellState::failed;
+        const bool same_program = is_of_this_program(row, cell);
+        if (row.value("status", nlohmann::json()) != "ok")
+            return same_program ? CellState::failed : CellState::failed_before;
         if (!std::filesystem::exists(directory_.file("cells/" + cell.name + "/image.exr")))
             return CellState::missing;
         for (const std::string& metric : matrix_.metrics)
             if (!row["metrics"].contains(metric)) return CellState::missing;
         if (matrix_.stability && !holds_stability(row, cell, *matrix_.stability))
             return CellState::missing;
-        const bool same_program =
-            row.value("build", nlohmann::json()) == build_ &&
-            row.value("simd_width", nlohmann::json()) == simd_width_ &&
-            row.value("scene_hash", nlohmann::json()) == scene_hashes_.at(cell.scene) &&
-            row.value("image_hash", "") == image_hash(matrix_, cell) &&
-            row.value("reference_hash", "") == reference_hash(matrix_, cell);
         return same_program ? CellState::finished : CellState::stale;
+    }
+
+    /// And of the files that there are now.
+    bool is_of_this_program(const nlohmann::json& row, const Cell& cell) const {
+        return row.value("build", nlohmann::json()) == build_ &&
+               row.value("simd_width", nlohmann::json()) == simd_width_ &&
+               row.value("scene_hash", nlohmann::json()) == scene_hashes_.at(cell.scene) &&
+               row.value("image_hash", "") == image_hash(matrix_, cell) &&
+               row.value("reference_hash", "") == reference_hash(matrix_, cell);
     }
 
     // A row stays until a new one takes its place: an interruption loses nothing.
@@ -131,7 +136,7 @@ class Runner {
             rows_[planned.cell->name] = old_rows_.at(planned.cell->name);
             if (planned.run) continue;
             ++summary.kept;
-            if (planned.state != CellState::stale) continue;
+            if (planned.state == CellState::finished || planned.state == CellState::failed) continue;
             ++summary.stale;
             run_["stale"].push_back(planned.cell->name);
         }

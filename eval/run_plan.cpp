@@ -14,7 +14,7 @@ bool runs(CellState state, Rerun rerun) {
         case Rerun::all:
             return true;
         case Rerun::failed:
-            return state == CellState::missing || state == CellState::failed;
+            return state != CellState::finished && state != CellState::stale;
         case Rerun::stale:
             return state != CellState::finished && state != CellState::failed;
         case Rerun::nothing:

@@ -18,6 +18,7 @@ enum class CellState {
     finished,  ///< done by this program on this scene file
     stale,     ///< done, but by another build of the program or on another state of the scene file
     failed,    ///< tried, with a reason
+    failed_before,  ///< the same, but by another build or on another state of the scene file
 };
 
 enum class Rerun { nothing, failed, stale, all };

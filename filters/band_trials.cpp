@@ -26,7 +26,7 @@ double usual_mean(std::vector<double> values) {
 }
 
 /// Returns the light over pi that reaches records: their mean.
-glm::vec3 take_records(std::span<const RecordTrial> trials, PaceFindings& findings) {
+glm::vec3 find_of_records(std::span<const RecordTrial> trials, PaceFindings& findings) {
     constexpr double kFitNoise = 0.4;  // of a record's own, once it is fitted to those around
     glm::vec3 light(0.0f);
     int count = 0;
@@ -92,7 +92,7 @@ PaceFindings BandTrials::structure() const {
             trial = try_records({inputs_.tracer, inputs_.clusters}, number);
             return trial.path_s;
         });
-        ambient = take_records(made, findings);
+        ambient = find_of_records(made, findings);
     }
     const auto given = [this](std::size_t, std::size_t) {
         return static_cast<std::uint32_t>(inputs_.plan.pilot_spp) + kTrySamples;
@@ -167,6 +167,12 @@ double BandTrials::unit_s(int number, const Given& given) const {
     const PixelSampler sampler = this->sampler(inputs_.plan);
     double work = 0;
     for (const NeedyPlace& place : places) work += sampler.work(place);
+    if (!(work > 0)) {  // none of these gets any: it is about others
+        for (NeedyPlace& place : places) {
+            place.pixel.samples = static_cast<std::uint32_t>(inputs_.plan.pilot_spp + kOwnPacketSpp);
+            work += sampler.work(place);
+        }
+    }
     const ThreadStopwatch watch;
     sampler.sample(places, [](const NeedyPlace&, const SampledPixel&) {});
     return watch.seconds() / std::max(work, 1.0);

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/eight_lanes.h"
-#include "core/parallel.h"
 #include "filters/shadow_field.h"
 
 namespace vecino {
@@ -100,16 +99,14 @@ void compare(MeanRow& row, const MeanRow& next) {
 /// Goes down rows with those around at hand.
 class RowSmoother {
   public:
-    RowSmoother(const LightField& field, RowRange rows, int reach, int first)
-        : field_(field),
-          rows_(rows),
-          reach_(reach),
-          window_(static_cast<std::size_t>(2 * reach + 2)) {
-        for (int dy = -reach; dy <= reach; ++dy) load(first + dy);
-    }
+    RowSmoother(const LightField& field, RowRange rows, int reach)
+        : field_(field), rows_(rows), reach_(reach), window_(reach, reach + 1) {}
 
     std::vector<Smoothed> next(int y, const std::vector<int>& pixels) {
-        load(y + reach_ + 1);
+        window_.go_to(y, [this](int k, MeanRow& row) {
+            read_row(field_, k, rows_, row);
+            if (!window_[k - 1].field.object.empty()) compare(window_[k - 1], row);
+        });
         std::vector<Smoothed> out;
         LaneSums sums;
         int summed = -1;  // block
@@ -119,7 +116,7 @@ class RowSmoother {
                 sums = sums_of(y, summed * kLanes);
             }
             const int i = x % kLanes;
-            const FieldRow& own = row(y).field;
+            const FieldRow& own = window_[y].field;
             const auto at = field_index(x);
             if (own.object[at] == kNoField) continue;
             const float share = grain(sums, i);
@@ -135,22 +132,12 @@ class RowSmoother {
     }
 
   private:
-    MeanRow& row(int y) {
-        const int size = static_cast<int>(window_.size());
-        return window_[static_cast<std::size_t>((y % size + size) % size)];
-    }
-
-    void load(int y) {
-        read_row(field_, y, rows_, row(y));
-        if (!row(y - 1).field.object.empty()) compare(row(y - 1), row(y));
-    }
-
     LaneSums sums_of(int y, int x) {
         LaneSums sums{};
         const auto at = field_index(x);
         for (int dy = -reach_; dy <= reach_; ++dy) {
             for (int dx = -reach_; dx <= reach_; ++dx) {
-                add_pixels(row(y), row(y + dy), {at, field_index(x + dx)}, sums);
+                add_pixels(window_[y], window_[y + dy], {at, field_index(x + dx)}, sums);
             }
         }
         return sums;
@@ -159,26 +146,18 @@ class RowSmoother {
     const LightField& field_;
     RowRange rows_;
     int reach_;
-    std::vector<MeanRow> window_;  ///< by row, around and around
+    RowWindow<MeanRow> window_;
 };
 
 }  // namespace
 
 void smooth_half_shadow(const RecordTracer& tracer, const GivenSamples& given,
                         PixelClusters& clusters) {
-    constexpr std::size_t kRowsPerBlock = 32;
     // The fewer samples, the larger the window.
     const int reach = given.pilot_spp > 1 ? kFieldReach - 1 : kFieldReach;
     const RowRange rows = clusters.rows();
     const auto smooth = [&](const LightField& field, const FieldPixels& open) {
-        SmoothedRows out(open.x.size());
-        for_each_block(out.size(), kRowsPerBlock, tracer.threads, [&](BlockRange block) {
-            const auto y_of = [&](std::size_t r) { return open.rows.begin + static_cast<int>(r); };
-            RowSmoother smoother(field, rows, reach, y_of(block.begin));
-            for (std::size_t r = block.begin; r < block.end; ++r)
-                out[r] = smoother.next(y_of(r), open.x[r]);
-        });
-        return out;
+        return go_down_rows(open, tracer.threads, [&] { return RowSmoother(field, rows, reach); });
     };
     smooth_lights(tracer, shadow_pixels(given.rows, given.needy, given.pilot_spp), smooth,
                   clusters);

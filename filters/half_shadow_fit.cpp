@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/clones.h"
-#include "core/parallel.h"
 #include "filters/half_shadow.h"
 #include "filters/shadow_field.h"
 
@@ -198,15 +197,13 @@ FittedLanes fit_lanes(const Window& window, bool picks) {
 /// Goes down rows with those around at hand.
 class RowFitter {
   public:
-    RowFitter(const LightField& field, RowRange rows, int first)
-        : field_(field), rows_(rows), window_(kSide) {
-        for (int dy = -kReach; dy < kReach; ++dy) load(first + dy);
-    }
+    RowFitter(const LightField& field, RowRange rows)
+        : field_(field), rows_(rows), window_(kReach, kReach) {}
 
     std::vector<Smoothed> next(int y, const std::vector<int>& pixels) {
-        load(y + kReach);
+        window_.go_to(y, [this](int k, FieldRow& row) { field_.read(k, rows_, row); });
         Window window{};
-        for (int k = 0; k < kSide; ++k) window.rows[k] = &row(y + k - kReach);
+        for (int k = 0; k < kSide; ++k) window.rows[k] = &window_[y + k - kReach];
         std::vector<Smoothed> out;
         FittedLanes fitted;
         int done = -1;  // block
@@ -223,10 +220,6 @@ class RowFitter {
     }
 
   private:
-    FieldRow& row(int y) { return window_[static_cast<std::size_t>((y % kSide + kSide) % kSide)]; }
-
-    void load(int y) { field_.read(y, rows_, row(y)); }
-
     [[nodiscard]] Smoothed smoothed(const Window& window, const FittedLanes& fitted, int x) const {
         const auto lane = static_cast<std::size_t>(x % kLanes);
         const std::size_t at = field_index(x);
@@ -243,31 +236,16 @@ class RowFitter {
 
     const LightField& field_;
     RowRange rows_;
-    std::vector<FieldRow> window_;  ///< by row, around and around
+    RowWindow<FieldRow> window_;
 };
 
 }  // namespace
 
 void fit_half_shadow(const RecordTracer& tracer, const GivenSamples& given,
                      PixelClusters& clusters) {
-    constexpr std::size_t kRowsPerBlock = 32;
     const auto smooth = [&](const LightField& field, const FieldPixels& pixels) {
-        SmoothedRows out(pixels.x.size());
-        for_each_block(out.size(), kRowsPerBlock, tracer.threads, [&](BlockRange block) {
-            const auto y_of = [&](std::size_t r) {
-                return pixels.rows.begin + static_cast<int>(r);
-            };
-            if (std::all_of(pixels.x.begin() + static_cast<std::ptrdiff_t>(block.begin),
-                            pixels.x.begin() + static_cast<std::ptrdiff_t>(block.end),
-                            [](const auto& row) { return row.empty(); })) {
-                return;
-            }
-            // Beyond the band there are first samples alone, which are far noisier.
-            RowFitter fitter(field, given.rows, y_of(block.begin));
-            for (std::size_t r = block.begin; r < block.end; ++r)
-                out[r] = fitter.next(y_of(r), pixels.x[r]);
-        });
-        return out;
+        // Beyond the band there are first samples alone, which are far noisier.
+        return go_down_rows(pixels, tracer.threads, [&] { return RowFitter(field, given.rows); });
     };
     smooth_lights(tracer, shadow_pixels(given.rows, given.needy), smooth, clusters);
 }

@@ -23,7 +23,7 @@ struct PixelEstimate {
 };
 
 float luminance(glm::vec3 v) {
-    return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
+    return vecino::luminance(v.x, v.y, v.z);
 }
 
 glm::vec3 vector(const float (&v)[3]) {
@@ -35,7 +35,7 @@ class Estimator {
     explicit Estimator(const NeedInputs& inputs)
         : inputs_(inputs),
           task_(inputs.tracer.task),
-          picks_(task_.light_count > static_cast<std::uint32_t>(kMostExactLights)) {}
+          picks_(picks_lights(task_)) {}
 
     [[nodiscard]] PixelEstimate estimate(int x, int y) const {
         PixelEstimate out;
@@ -104,7 +104,6 @@ float shown_slope(float light) {
 /// Standard deviation of one sample of a pixel in sRGB, from the pixel and its needy neighbours.
 class Spread {
   public:
-    /// first_samples: of every pixel.
     Spread(const PixelEstimate& own, std::uint8_t needs, int lights, bool picks)
         : own_(own),
           needs_(needs),
@@ -187,7 +186,7 @@ class SpreadFinder {
     /// needy: of rows. Begins at row number first of these.
     SpreadFinder(const NeedInputs& inputs, RowRange rows, const NeedyRows& needy, std::size_t first)
         : estimator_(inputs),
-          picks_(inputs.tracer.task.light_count > static_cast<std::uint32_t>(kMostExactLights)),
+          picks_(picks_lights(inputs.tracer.task)),
           lights_(picks_ ? 0 : static_cast<int>(inputs.tracer.task.light_count)),
           rows_(rows),
           needy_(needy) {
@@ -286,7 +285,7 @@ NeededSamples::Outlook NeededSamples::outlook(const NeedyRows& needy,
             const double square = static_cast<double>(spread.srgb * spread.srgb) / 3;
             out.error += square * (given > pilot ? noise.of(given) : noise.of_pilot(needs));
             if ((needs & kNeedsCoverage) == 0) out.error += square * noise.missed();
-            if (given > pilot) out.work += edge_work(given, pilot);
+            if (given > pilot) out.work += further_work(given, pilot);
             if ((needs & kNeedsShadow) != 0) out.work += kSmoothingWork;
             ++out.pixels;
         }

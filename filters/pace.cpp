@@ -207,8 +207,8 @@ RecordCheckSize Pace::check_size(const SurfaceRecordsPlan& plan) const {
 }
 
 bool Pace::wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan,
-                       bool knows_lamps) const {
-    // Of lamps paths know by chance what clusters know exactly, which this does not count.
+                       bool has_lamps) const {
+    // Paths are noisy by lamps, too, which this does not count.
     constexpr double kOfLamps = 2;
     SurfaceRecordsPlan fewer = plan;
     fewer.edge_spp = static_cast<int>(plan.edge_spp / kPathWork);
@@ -219,7 +219,7 @@ bool Pace::wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan
     const double lost = then.samples - here.samples;
     const double wrong = here.at_shared.error - here.at_shared.standard_error;
     if ((wrong - path_noise(here.at_shared, fewer)) * here.shared_pixels <= lost) return false;
-    if (!knows_lamps) return true;
+    if (!has_lamps) return true;
     return is_sure(here.at_shared) &&
            expected_error(here, plan) > kOfLamps * expected_error(then, fewer);
 }

@@ -93,8 +93,9 @@ class Pace {
     /// How large a check of records may be, that is a small part of what time is left.
     [[nodiscard]] RecordCheckSize check_size(const SurfaceRecordsPlan& plan) const;
     /// Whether whole paths are better at edges than records, at the price of having fewer samples.
+    /// has_lamps: there is light that clusters know better than paths do.
     [[nodiscard]] bool wants_paths(const ErrorFindings& here, const SurfaceRecordsPlan& plan,
-                                   bool knows_lamps) const;
+                                   bool has_lamps) const;
     /// Of the frame: a mean square in sRGB.
     [[nodiscard]] double expected_error(const ErrorFindings& here,
                                         const SurfaceRecordsPlan& plan) const;

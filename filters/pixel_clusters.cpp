@@ -167,7 +167,7 @@ float share_in_sight(const LightSums& sums) {
 }
 
 glm::vec3 direct_light(const TraceTask& task, const Cluster& cluster) {
-    if (task.light_count > static_cast<std::uint32_t>(kMostExactLights)) {
+    if (picks_lights(task)) {
         return vector(cluster.picked) * (1.0f / std::max(cluster.shadow_count, 1.0f));
     }
     glm::vec3 light(0.0f);

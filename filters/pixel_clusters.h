@@ -30,6 +30,11 @@ struct RowRange {
     int end = 0;
 };
 
+/// Whether each sample picks an emitter: there are too many to look at one by one.
+inline bool picks_lights(const TraceTask& task) {
+    return task.light_count > static_cast<std::uint32_t>(kMostExactLights);
+}
+
 class PixelClusters {
   public:
     /// Room for so many rows of a scene with so many emitters; none yet.

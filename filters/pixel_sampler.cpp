@@ -99,7 +99,7 @@ bool PixelSampler::shares_packets(const NeedyPlace& place) const {
 double PixelSampler::work(const NeedyPlace& place) const {
     if (!wants(place)) return 0;
     const std::uint32_t paths = paths_of(place.pixel, is_crowded(place));
-    return paths > 0 ? kPathWork * paths + kEdgeStart : edge_work(place.pixel.samples, pilot_spp());
+    return paths > 0 ? kPathWork * paths + kEdgeStart : further_work(place.pixel.samples, pilot_spp());
 }
 
 /// Plain paths of a pixel; none where records and clusters do.
@@ -109,7 +109,8 @@ std::uint32_t PixelSampler::paths_of(const NeedyPixel& pixel, bool crowded) cons
     const SurfaceRecordsPlan& plan = inputs_.plan;
     if (crowded) return std::max(pixel.samples, kMore * static_cast<std::uint32_t>(plan.edge_spp));
     const bool wanted = plan.edge_light == EdgeLight::paths && (pixel.needs & kNeedsCoverage) != 0;
-    return wanted ? pixel.samples : 0;
+    // Fewer than a packet has room for take as long.
+    return wanted ? std::max(pixel.samples, std::uint32_t{kOwnPacketSpp}) : 0;
 }
 
 void PixelSampler::trace_paths(Pixel at, std::uint32_t paths, SampledPixel& out) const {

@@ -45,8 +45,8 @@ class PixelSampler {
     /// Takes what became of a pixel.
     using Take = std::function<void(const NeedyPlace&, const SampledPixel&)>;
 
-    /// Samples those that want any, in no order. Changes nothing: it may be called to see how long
-    /// it takes.
+    /// Samples those that want any, in no order; each pixel's clusters are read before they are
+    /// taken. Changes nothing by itself: it may be called to see how long it takes.
     void sample(std::span<const NeedyPlace> places, const Take& take) const;
 
     /// About what that takes for one, in samples of a pixel that is not crowded.

@@ -138,10 +138,11 @@ class Band {
     }
 
     void add_samples() {
-        constexpr std::size_t kRows = 4;  // pixels of several fill the packets that they share
         const PixelSampler sampler = this->sampler();
         std::atomic<std::uint64_t> rays = 0, samples = 0;
-        for_each_block(needy_.size(), kRows, tracer_.threads, [&](BlockRange block) {
+        // Pixels of several rows fill the packets that they share.
+        const std::size_t rows = plan_.edge_spp < kOwnPacketSpp ? 4 : 1;
+        for_each_block(needy_.size(), rows, tracer_.threads, [&](BlockRange block) {
             std::vector<NeedyPlace> places;
             for (std::size_t r = block.begin; r < block.end; ++r) {
                 for (const NeedyPixel& pixel : needy_[r])
@@ -209,8 +210,8 @@ class Band {
         const BandTrials trials = this->trials();
         choose_edge_spp(trials);
         ErrorFindings findings = trials.errors(*needed_);
-        const bool knows_lamps = tracer_.task.light_count > 0;
-        if (context_.pace->wants_paths(findings, plan_, knows_lamps)) {
+        const bool has_lamps = tracer_.task.light_count > 0;
+        if (context_.pace->wants_paths(findings, plan_, has_lamps)) {
             plan_.edge_light = EdgeLight::paths;
             choose_edge_spp(trials);
             findings.samples = needed_->outlook(needy_, {plan_.edge_spp, plan_.pilot_spp}).error;

@@ -17,7 +17,7 @@ struct Candidate {
     std::int32_t object;
     glm::vec3 normal;
     float least_cosine;  ///< between its normal and others of its surface in the cell
-    float score;         ///< the higher the better: most of a pixel, close to the middle
+    float score;  ///< the higher the better: most of a pixel, in the middle, nothing else beside
 };
 
 using Candidates = std::vector<Candidate>;

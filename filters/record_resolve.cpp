@@ -45,7 +45,7 @@ VECINO_CLONES void shade_block(const PilotBlock& block, const PilotLight* lights
         points.normal_world[1][i] = y * per_length;
         points.normal_world[2][i] = z * per_length;
     }
-    if (task.light_count > static_cast<std::uint32_t>(kMostExactLights)) {
+    if (picks_lights(task)) {
         for (int i = 0; i < kLanes; ++i) {
             out.direct[0][i] = lights[0].exact[i] * shadow_share[i];
             out.direct[1][i] = lights[0].open[i] * shadow_share[i];

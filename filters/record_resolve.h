@@ -25,7 +25,7 @@ struct TracedPixel {
     PixelValues values;
 };
 
-/// What goes beyond clusters and records in a row, in order of x.
+/// What goes beyond clusters and records in a row.
 struct RowExceptions {
     std::vector<Orphan> orphans;
     std::vector<TracedPixel> traced;

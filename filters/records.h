@@ -138,7 +138,7 @@ struct SurfacePoint {
 /// no record is near.
 bool record_light(const RecordMap& map, const SurfacePoint& point, RecordValue& light);
 
-/// Whether there is one.
+/// Whether a record is near.
 bool is_near_record(const RecordMap& map, const SurfacePoint& point);
 
 /// Light in a fraction of the time, as good as to say how much light there is about: the mean of

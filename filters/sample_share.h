@@ -15,8 +15,8 @@ namespace vecino {
 
 /// Of one sample of a pixel.
 struct PixelSpread {
-    float srgb;          ///< standard deviation
-    bool is_fitted;      ///< less what fit_half_shadow() makes of the pixels around
+    float srgb;          ///< standard deviation, less what fit_half_shadow() takes of it as a rule
+    bool is_fitted;      ///< in the middle of a wide half-shadow: that rule holds
     bool is_clear_edge;  ///< between surfaces; emitters are looked at one by one
     bool is_clipped;     ///< some of it may be too bright to be shown: by one sample all or none
 };

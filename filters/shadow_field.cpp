@@ -3,14 +3,11 @@
 
 #include <algorithm>
 
+#include "core/color.h"
 #include "core/parallel.h"
 
 namespace vecino {
 namespace {
-
-float luminance(float r, float g, float b) {
-    return 0.2126f * r + 0.7152f * g + 0.0722f * b;
-}
 
 /// Pixels side by side that lie on one surface alone, and have looked at the light.
 struct KnownPixels {
@@ -96,7 +93,7 @@ FieldPixels shadow_pixels(RowRange rows, const NeedyRows& needy, int most_sample
 void smooth_lights(const RecordTracer& tracer, const FieldPixels& pixels,
                    const FieldSmoother& smooth, PixelClusters& clusters) {
     if (std::ranges::all_of(pixels.x, [](const auto& row) { return row.empty(); })) return;
-    const bool picks = tracer.task.light_count > static_cast<std::uint32_t>(kMostExactLights);
+    const bool picks = picks_lights(tracer.task);
     const int lights = picks ? 1 : static_cast<int>(tracer.task.light_count);
     for (int l = 0; l < lights; ++l) {
         const LightField field(clusters, l, picks);

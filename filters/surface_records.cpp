@@ -63,11 +63,11 @@ Planes planes_to_make(const RenderSettings& settings) {
     return planes;
 }
 
-/// Rows of a band, whole cells of them; the same for all sides that divide 16, so that a pace can
+/// Rows of a band, whole cells of them; the same for all sides that divide 48, so that a pace can
 /// still choose among these.
 int band_rows(Extent size, int cell) {
     const auto width = static_cast<std::size_t>(size.width);
-    const int unit = std::lcm(cell, 16);
+    const int unit = std::lcm(cell, 48);
     const int rows = std::max(static_cast<int>(kBandPixels / width), 16 * std::max(cell, 16));
     return (rows + unit - 1) / unit * unit;
 }

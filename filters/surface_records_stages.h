@@ -16,7 +16,8 @@ class Pace;
 
 constexpr double kPathWork = 3;  ///< of a whole path of a pixel, held against a sample of it
 
-/// Samples of a needy pixel that fill packets of its own. With fewer, pixels share packets.
+/// With so many samples or more a needy pixel gets packets of its own, as wide as they may be. With
+/// fewer, pixels share packets.
 constexpr int kOwnPacketSpp = 16;
 
 // What a stage of surface_records costs before its first sample, in samples: measured at 512x512,
@@ -25,7 +26,7 @@ constexpr double kPilotStart = 3.5, kEdgeStart = 25, kRecordStart = 6;
 
 /// What further samples of a needy pixel take, where there were so many first ones: in samples of
 /// many.
-constexpr double edge_work(std::uint32_t samples, std::uint32_t first) {
+constexpr double further_work(std::uint32_t samples, std::uint32_t first) {
     constexpr double kFewStart = 4;
     return samples - first + (samples < kOwnPacketSpp ? kFewStart : kEdgeStart);
 }

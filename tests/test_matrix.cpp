@@ -191,6 +191,25 @@ TEST_CASE("failed and stale cells are done again when asked, not before", "[matr
     CHECK(run_matrix(matrix, out, {.only = "", .rerun = Rerun::all}).done == 9);
 }
 
+TEST_CASE("a cell that another build failed at is done again with failed and with stale ones",
+          "[matrix]") {
+    const TempDir dir;
+    const Matrix matrix = write_and_load(dir, tiny_matrix());
+    const std::string out = dir.path("out");
+    const Rerun rerun = GENERATE(Rerun::failed, Rerun::stale);
+    run_matrix(matrix, out);
+    auto rows = RunDirectory::open(out).rows();
+    rows["cornell.path.s1"]["build"] = "another";
+    rows["cornell.path.s1"]["status"] = "failed";
+    std::string lines;
+    for (const auto& [name, row] : rows) lines += row.dump() + "\n";
+    std::ofstream(out + "/results.jsonl", std::ios::trunc) << lines;
+    CHECK(run_matrix(matrix, out).failed == 1);
+    const RunSummary again = run_matrix(matrix, out, {.only = "", .rerun = rerun});
+    CHECK(again.done == 1);
+    CHECK(again.failed == 0);
+}
+
 TEST_CASE("an estimate names what is to do and touches nothing", "[matrix]") {
     const TempDir dir;
     const Matrix matrix = write_and_load(dir, tiny_matrix());

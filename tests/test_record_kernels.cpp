@@ -54,7 +54,7 @@ TEST_CASE("pixels that share packets see what each of them sees on its own", "[s
     RenderSettings settings;
     settings.size = {96, 96};
     settings.max_depth = 2;
-    settings.simd_width = GENERATE(1, 0);
+    settings.simd_width = GENERATE_REF(from_range(simd_widths()));
     const FlatScene flat = flatten(scene);
     const TraceTask task = render_task(scene, flat, settings);
     const RecordKernel& kernel = *kernel_for(settings.simd_width).records;
