@@ -13,6 +13,7 @@
 #include "eval/group_statistics.h"
 #include "eval/metrics.h"
 #include "eval/run_directory.h"
+#include "filters/methods.h"
 #include "filters/schemes.h"
 
 namespace vecino {
@@ -88,6 +89,9 @@ int rarest_colour(const std::vector<MethodStyle>& styles) {
 std::vector<MethodStyle> method_styles(const std::vector<GroupSummary>& groups) {
     std::vector<std::string> names;
     for (const Scheme& scheme : all_schemes()) names.emplace_back(scheme.name);
+    for (const Method& method : all_methods()) {
+        if (method.name != "path") names.emplace_back(method.name);
+    }
     std::set<std::string> used;
     for (const GroupSummary& group : groups) {
         used.insert(group.method);
