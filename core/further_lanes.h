@@ -125,8 +125,8 @@ struct FewInputs {
 };
 
 /// One sample that hit another surface than its pixel's first.
-inline void add_other(const TraceTask& task, const SampleLanes& sample, int lane,
-                      ClusterList& list, std::uint32_t number) {
+inline void add_other(const TraceTask& task, const SampleLanes& sample, int lane, ClusterList& list,
+                      std::uint32_t number) {
     for (int k = 1; k < list.count; ++k) {
         if (belongs(sample, lane, list.clusters[k]))
             return add_to_cluster(task, sample, lane, list.clusters[k]);

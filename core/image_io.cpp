@@ -30,7 +30,7 @@ using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
 /// Rows read at a time.
-constexpr int kBandRows = 64;
+constexpr int kReadRows = 64;
 
 struct Source {
     std::string path;
@@ -335,9 +335,9 @@ ChannelFile load_channels(const std::string& path) {
     for (const std::string& name : spec.channelnames) {
         file.channels.push_back({name, std::vector<float>(size.area())});
     }
-    std::vector<float> band(width * channels * kBandRows);
-    for (int begin = 0; begin < size.height; begin += kBandRows) {
-        const int end = std::min(begin + kBandRows, size.height);
+    std::vector<float> band(width * channels * kReadRows);
+    for (int begin = 0; begin < size.height; begin += kReadRows) {
+        const int end = std::min(begin + kReadRows, size.height);
         if (!source.input->read_scanlines(0, 0, begin, end, 0, 0, spec.nchannels, TypeDesc::FLOAT,
                                           band.data())) {
             cannot_read(path, first_fault(source.input->geterror()));

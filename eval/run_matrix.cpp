@@ -136,7 +136,8 @@ class Runner {
             rows_[planned.cell->name] = old_rows_.at(planned.cell->name);
             if (planned.run) continue;
             ++summary.kept;
-            if (planned.state == CellState::finished || planned.state == CellState::failed) continue;
+            if (planned.state == CellState::finished || planned.state == CellState::failed)
+                continue;
             ++summary.stale;
             run_["stale"].push_back(planned.cell->name);
         }

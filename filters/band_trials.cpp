@@ -169,7 +169,8 @@ double BandTrials::unit_s(int number, const Given& given) const {
     for (const NeedyPlace& place : places) work += sampler.work(place);
     if (!(work > 0)) {  // none of these gets any: it is about others
         for (NeedyPlace& place : places) {
-            place.pixel.samples = static_cast<std::uint32_t>(inputs_.plan.pilot_spp + kOwnPacketSpp);
+            place.pixel.samples =
+                static_cast<std::uint32_t>(inputs_.plan.pilot_spp + kOwnPacketSpp);
             work += sampler.work(place);
         }
     }

@@ -18,7 +18,7 @@ struct MeanRow {
     std::vector<float> right, below;  ///< squared difference to that neighbour; < 0: no such
 };
 
-constexpr int kLanes = 8;
+constexpr int kSummed = 8;  ///< pixels of a row at a time
 
 /// Sums over the windows of pixels side by side.
 struct LaneSums {
@@ -111,11 +111,11 @@ class RowSmoother {
         LaneSums sums;
         int summed = -1;  // block
         for (const int x : pixels) {
-            if (x / kLanes != summed) {
-                summed = x / kLanes;
-                sums = sums_of(y, summed * kLanes);
+            if (x / kSummed != summed) {
+                summed = x / kSummed;
+                sums = sums_of(y, summed * kSummed);
             }
-            const int i = x % kLanes;
+            const int i = x % kSummed;
             const FieldRow& own = window_[y].field;
             const auto at = field_index(x);
             if (own.object[at] == kNoField) continue;

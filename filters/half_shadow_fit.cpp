@@ -11,7 +11,6 @@
 namespace vecino {
 namespace {
 
-constexpr int kLanes = kPilotPixels;
 constexpr int kReach = kFieldReach;
 constexpr int kSide = 2 * kReach + 1;
 
@@ -30,9 +29,10 @@ struct Window {
     std::size_t at;
 };
 
-// Of kLanes pixels. Loops over plain arrays of so few floats are not made vectors of by GCC 12.
-using Floats = float __attribute__((vector_size(4 * kLanes)));
-using Masks = std::int32_t __attribute__((vector_size(4 * kLanes)));
+// Of kPilotPixels pixels. Loops over plain arrays of so few floats are not made vectors of by
+// GCC 12.
+using Floats = float __attribute__((vector_size(4 * kPilotPixels)));
+using Masks = std::int32_t __attribute__((vector_size(4 * kPilotPixels)));
 
 template <class Vector, class Value>
 VECINO_INLINE void load(const Value* from, Vector& to) {
@@ -172,7 +172,7 @@ VECINO_CLONES void fit_channel(const Window& window, int channel, Floats& out) {
 
 /// Side by side.
 struct FittedLanes {
-    float share[kLanes];             ///< of the fit in what a pixel becomes
+    float share[kPilotPixels];       ///< of the fit in what a pixel becomes
     Floats channel[kFieldChannels];  ///< of the fit at the pixel, less its own
 };
 
@@ -185,7 +185,7 @@ FittedLanes fit_lanes(const Window& window, bool picks) {
     fit_window(values, fit);
     residuals_of(values, fit, residuals);
     FittedLanes out;
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kPilotPixels; ++i) {
         const bool alike = values.objects[i] == 0 && values.creases[i] >= 0;
         out.share[i] = alike ? noisiness(residuals, i) : 0.0f;
     }
@@ -208,12 +208,12 @@ class RowFitter {
         FittedLanes fitted;
         int done = -1;  // block
         for (const int x : pixels) {
-            if (x / kLanes != done) {
-                done = x / kLanes;
-                window.at = field_index(done * kLanes);
+            if (x / kPilotPixels != done) {
+                done = x / kPilotPixels;
+                window.at = field_index(done * kPilotPixels);
                 fitted = fit_lanes(window, field_.picks());
             }
-            const auto lane = static_cast<std::size_t>(x % kLanes);
+            const auto lane = static_cast<std::size_t>(x % kPilotPixels);
             if (fitted.share[lane] > 0) out.push_back(smoothed(window, fitted, x));
         }
         return out;
@@ -221,7 +221,7 @@ class RowFitter {
 
   private:
     [[nodiscard]] Smoothed smoothed(const Window& window, const FittedLanes& fitted, int x) const {
-        const auto lane = static_cast<std::size_t>(x % kLanes);
+        const auto lane = static_cast<std::size_t>(x % kPilotPixels);
         const std::size_t at = field_index(x);
         const FieldRow& own = *window.rows[kReach];
         const float share = fitted.share[lane];

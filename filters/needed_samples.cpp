@@ -33,9 +33,7 @@ glm::vec3 vector(const float (&v)[3]) {
 class Estimator {
   public:
     explicit Estimator(const NeedInputs& inputs)
-        : inputs_(inputs),
-          task_(inputs.tracer.task),
-          picks_(picks_lights(task_)) {}
+        : inputs_(inputs), task_(inputs.tracer.task), picks_(picks_lights(task_)) {}
 
     [[nodiscard]] PixelEstimate estimate(int x, int y) const {
         PixelEstimate out;

@@ -8,7 +8,6 @@
 namespace vecino {
 namespace {
 
-constexpr int kLanes = kPilotPixels;
 constexpr float kAlbedoJump2 = 1e-3f;   ///< squared difference that counts as an edge
 constexpr float kCreaseCosine = 0.95f;  ///< between normals; below, there is an edge
 
@@ -18,7 +17,7 @@ constexpr std::int32_t kCoverage = kNeedsCoverage, kShadow = kNeedsShadow;
 VECINO_CLONES void look_at_block(const PilotBlock& block, const PilotLight* lights, int light_count,
                                  std::size_t at, LookRow& row) {
     const Floats8 none = {};
-    for (std::size_t i = 0; i < kLanes; i += 8) {
+    for (std::size_t i = 0; i < kPilotPixels; i += 8) {
         Floats8 count, x, y, z, value, seen, open;
         Masks8 object, own = {}, bits = {};
         load(block.object + i, object);
@@ -142,7 +141,8 @@ void look_at_row(const TraceTask& task, const PixelClusters& clusters, int y, Lo
     const std::size_t padded =
         y < rows.begin || y >= rows.end
             ? 0
-            : static_cast<std::size_t>((clusters.width() + kLanes - 1) / kLanes * kLanes);
+            : static_cast<std::size_t>((clusters.width() + kPilotPixels - 1) / kPilotPixels *
+                                       kPilotPixels);
     for (auto* plane : {&row.object, &row.lights, &row.own}) plane->resize(padded);
     for (int c = 0; c < 3; ++c) {
         row.albedo[c].resize(padded);
@@ -150,10 +150,10 @@ void look_at_row(const TraceTask& task, const PixelClusters& clusters, int y, Lo
     }
     if (padded == 0) return;
     const int light_count = static_cast<int>(task.light_count);
-    for (int x = 0; x < clusters.width(); x += kLanes) {
+    for (int x = 0; x < clusters.width(); x += kPilotPixels) {
         look_at_block(clusters.block(x, y), clusters.lights(x, y), light_count,
                       static_cast<std::size_t>(x), row);
-        const int end = std::min(x + kLanes, clusters.width());
+        const int end = std::min(x + kPilotPixels, clusters.width());
         for (int i = x; i < end; ++i) {
             const ClusterList* const list = clusters.list(i, y);
             if (list != nullptr) add_list(*list, light_count, row.own[static_cast<std::size_t>(i)]);

@@ -99,7 +99,8 @@ bool PixelSampler::shares_packets(const NeedyPlace& place) const {
 double PixelSampler::work(const NeedyPlace& place) const {
     if (!wants(place)) return 0;
     const std::uint32_t paths = paths_of(place.pixel, is_crowded(place));
-    return paths > 0 ? kPathWork * paths + kEdgeStart : further_work(place.pixel.samples, pilot_spp());
+    return paths > 0 ? kPathWork * paths + kEdgeStart
+                     : further_work(place.pixel.samples, pilot_spp());
 }
 
 /// Plain paths of a pixel; none where records and clusters do.

@@ -9,7 +9,6 @@
 namespace vecino {
 namespace {
 
-constexpr int kLanes = kPilotPixels;
 constexpr std::size_t kMostNear = 32;  ///< records that one point is blended from
 
 /// A record near points, and which corner of the square of four cells its cell is.
@@ -25,13 +24,13 @@ struct NearRecords {
 
 /// Where points are within the square between the middles of four cells.
 struct Places {
-    alignas(64) float across[kLanes];
+    alignas(64) float across[kPilotPixels];
     float down;
 };
 
 struct Sums {
-    alignas(64) float light[kRecordChannels][kLanes];
-    alignas(64) float weight[kLanes];
+    alignas(64) float light[kRecordChannels][kPilotPixels];
+    alignas(64) float weight[kPilotPixels];
 };
 
 VECINO_INLINE void add_fit(const Record& record, const PointBlock& points, const float* weight,
@@ -40,7 +39,7 @@ VECINO_INLINE void add_fit(const Record& record, const PointBlock& points, const
     const auto& f = record.fit[channel];
     const float least = record.least[channel], most = record.most[channel];
     float* const to = sums.light[channel];
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kPilotPixels; ++i) {
         const float value =
             f[0] + u[i] * (f[1] + u[i] * f[3] + v[i] * f[4]) + v[i] * (f[2] + v[i] * f[5]);
         const float above = value > least ? value : least;
@@ -54,8 +53,8 @@ VECINO_CLONES void add_records(const NearRecords& near, const PointBlock& points
         const Record& r = *near.list[n].record;
         const bool right = near.list[n].corner % 2 != 0, below = near.list[n].corner / 2 != 0;
         const float of_row = below ? places.down : 1.0f - places.down;
-        alignas(64) float weight[kLanes], u[kLanes], v[kLanes];
-        for (int i = 0; i < kLanes; ++i) {
+        alignas(64) float weight[kPilotPixels], u[kPilotPixels], v[kPilotPixels];
+        for (int i = 0; i < kPilotPixels; ++i) {
             const float x = points.position_world[0][i] - r.position_world.x;
             const float y = points.position_world[1][i] - r.position_world.y;
             const float z = points.position_world[2][i] - r.position_world.z;
@@ -80,8 +79,8 @@ class BlockBlender {
         : map_(map), points_(points), out_(out) {}
 
     void run() {
-        bool pending[kLanes];
-        for (int i = 0; i < kLanes; ++i) {
+        bool pending[kPilotPixels];
+        for (int i = 0; i < kPilotPixels; ++i) {
             pending[i] = i < points_.count && points_.wanted[i];
             out_.found[i] = false;
         }
@@ -108,10 +107,10 @@ class BlockBlender {
     }
 
     /// Points in the same square and on the same object as point i.
-    void blend_like(int i, bool (&pending)[kLanes]) {
+    void blend_like(int i, bool (&pending)[kPilotPixels]) {
         const Square square = square_of(i);
         const std::int32_t object = points_.object[i];
-        bool mine[kLanes]{};
+        bool mine[kPilotPixels]{};
         for (int k = i; k < points_.count; ++k) {
             if (!pending[k] || points_.object[k] != object || !(square_of(k) == square)) continue;
             mine[k] = true;
@@ -133,7 +132,7 @@ class BlockBlender {
     [[nodiscard]] Places places_in(const Square& square) const {
         const auto cell = static_cast<float>(map_.levels[square.level].cell());
         Places places;
-        for (int i = 0; i < kLanes; ++i) {
+        for (int i = 0; i < kPilotPixels; ++i) {
             places.across[i] = (static_cast<float>(points_.x + i) + 0.5f) / cell - 0.5f -
                                static_cast<float>(square.column);
         }

@@ -28,12 +28,6 @@ struct NormalEquations {
     RecordValue least, most;
 };
 
-float eighth_power(float cosine) {
-    const float c2 = cosine * cosine;
-    const float c4 = c2 * c2;
-    return cosine > 0 ? c4 * c4 : 0.0f;
-}
-
 void set_tangents(Record& record) {
     const glm::vec3 n = record.normal_world;
     const float sign = std::copysign(1.0f, n.z);
@@ -144,7 +138,7 @@ class RecordFitter {
     void add_record(const Record& other, const Record& record, Scale scale,
                     NormalEquations& equations) const {
         if (other.object != record.object) return;
-        const float aligned = eighth_power(glm::dot(other.normal_world, record.normal_world));
+        const float aligned = agreement(glm::dot(other.normal_world, record.normal_world));
         const double dx = static_cast<double>(other.x - record.x) / scale.cell;
         const double dy = static_cast<double>(other.y - record.y) / scale.cell;
         const glm::vec3 off = other.position_world - record.position_world;

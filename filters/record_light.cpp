@@ -11,12 +11,6 @@
 namespace vecino {
 namespace {
 
-float eighth_power(float cosine) {
-    const float c2 = cosine * cosine;
-    const float c4 = c2 * c2;
-    return cosine > 0 ? c4 * c4 : 0.0f;
-}
-
 class Blend {
   public:
     Blend(const RecordMap& map, const SurfacePoint& point) : map_(map), point_(point) {}
@@ -68,7 +62,7 @@ class Blend {
 
     void add_record(const Record& record, float weight) {
         if (record.object != point_.object) return;
-        weight *= eighth_power(glm::dot(record.normal_world, point_.normal_world));
+        weight *= agreement(glm::dot(record.normal_world, point_.normal_world));
         if (!(weight > 0)) return;
         const glm::vec3 off = point_.position_world - record.position_world;
         const float u = glm::dot(off, record.u_axis), v = glm::dot(off, record.v_axis);

@@ -12,32 +12,30 @@
 namespace vecino {
 namespace {
 
-constexpr int kLanes = kPilotPixels;
-
 /// What pixels of one surface each are made of, side by side.
 struct ShadingBlock {
-    alignas(64) float albedo[3][kLanes];
-    float emission[3][kLanes];
-    float direct[3][kLanes];  ///< over pi, straight from emitters
+    alignas(64) float albedo[3][kPilotPixels];
+    float emission[3][kPilotPixels];
+    float direct[3][kPilotPixels];  ///< over pi, straight from emitters
 };
 
 /// Means of normals and positions, and what shading needs.
 VECINO_CLONES void shade_block(const PilotBlock& block, const PilotLight* lights,
                                const TraceTask& task, PointBlock& points, ShadingBlock& out) {
-    alignas(64) float share[kLanes], shadow_share[kLanes];
-    for (int i = 0; i < kLanes; ++i) {
+    alignas(64) float share[kPilotPixels], shadow_share[kPilotPixels];
+    for (int i = 0; i < kPilotPixels; ++i) {
         share[i] = 1.0f / (block.count[i] > 1.0f ? block.count[i] : 1.0f);
         shadow_share[i] = 1.0f / (block.shadow_count[i] > 1.0f ? block.shadow_count[i] : 1.0f);
     }
     for (int c = 0; c < 3; ++c) {
-        for (int i = 0; i < kLanes; ++i) {
+        for (int i = 0; i < kPilotPixels; ++i) {
             points.position_world[c][i] = block.position[c][i] * share[i];
             out.albedo[c][i] = block.albedo[c][i] * share[i];
             out.emission[c][i] = block.emission[c][i] * share[i];
             out.direct[c][i] = 0.0f;
         }
     }
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kPilotPixels; ++i) {
         const float x = block.normal[0][i], y = block.normal[1][i], z = block.normal[2][i];
         const float length2 = x * x + y * y + z * z;
         const float per_length = 1.0f / __builtin_sqrtf(length2 > 1e-30f ? length2 : 1e-30f);
@@ -46,7 +44,7 @@ VECINO_CLONES void shade_block(const PilotBlock& block, const PilotLight* lights
         points.normal_world[2][i] = z * per_length;
     }
     if (picks_lights(task)) {
-        for (int i = 0; i < kLanes; ++i) {
+        for (int i = 0; i < kPilotPixels; ++i) {
             out.direct[0][i] = lights[0].exact[i] * shadow_share[i];
             out.direct[1][i] = lights[0].open[i] * shadow_share[i];
             out.direct[2][i] = lights[0].seen[i] * shadow_share[i];
@@ -57,7 +55,7 @@ VECINO_CLONES void shade_block(const PilotBlock& block, const PilotLight* lights
         const PilotLight& light = lights[l];
         const float r = task.lights[l].radiance[0], g = task.lights[l].radiance[1],
                     b = task.lights[l].radiance[2];
-        for (int i = 0; i < kLanes; ++i) {
+        for (int i = 0; i < kPilotPixels; ++i) {
             const bool known = light.open[i] > 0.0f;
             const float ratio = light.seen[i] / (known ? light.open[i] : 1.0f);
             const float in_sight = known ? (ratio < 1.0f ? ratio : 1.0f) : 1.0f;
@@ -90,7 +88,7 @@ class RowResolver {
         : inputs_(inputs), y_(y), exceptions_(exceptions), frame_(frame) {}
 
     std::uint64_t run() {
-        for (int x = 0; x < inputs_.clusters.width(); x += kLanes) resolve_block(x);
+        for (int x = 0; x < inputs_.clusters.width(); x += kPilotPixels) resolve_block(x);
         for (const TracedPixel& pixel : exceptions_.traced)
             store_values(pixel.values, {pixel.x, y_}, frame_);
         return non_finite_;
@@ -103,9 +101,9 @@ class RowResolver {
         ShadingBlock shading;
         points.x = x;
         points.y = y_;
-        points.count = std::min(kLanes, inputs_.clusters.width() - x);
+        points.count = std::min(kPilotPixels, inputs_.clusters.width() - x);
         shade_block(block, inputs_.clusters.lights(x, y_), inputs_.task, points, shading);
-        bool single[kLanes];
+        bool single[kPilotPixels];
         for (int i = 0; i < points.count; ++i) {
             single[i] = inputs_.clusters.list(x + i, y_) == nullptr;
             points.object[i] = block.object[i];

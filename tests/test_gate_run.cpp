@@ -140,7 +140,12 @@ TEST_CASE("the committed baselines of the thesis's schemes hold", "[gate]") {
     const std::string matrix = GENERATE(values<std::string>({"thesis-gate", "thesis-quick"}));
     CAPTURE(matrix);
     const TempDir dir;
-    REQUIRE(run_line(dir, kProgram + "run " + config(matrix) + "-o out").code == 0);
+    // Times are not gated: one repeat of each will do.
+    dir.write("once.json", json{{"name", matrix},
+                                {"extends", VECINO_SOURCE_DIR "/configs/" + matrix + ".json"},
+                                {"measure", {{"repeat", 1}}}}
+                               .dump());
+    REQUIRE(run_line(dir, kProgram + "run once.json -o out").code == 0);
     const Outcome check = run_line(dir, kProgram + "check out " + baseline(matrix));
     INFO(check.out);
     CHECK(check.code == 0);
