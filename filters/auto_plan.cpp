@@ -110,6 +110,16 @@ EdgePoint point_at(const EdgeCurve& curve, double edge_spp) {
     return {edge_spp, between(low.work, high.work), between(low.error, high.error)};
 }
 
+/// What is left after many samples is noise of edges and half-shadow, where Sobol points gain less
+/// than on plain surfaces. On scenes/failures the mean slope is 1.25 from 16 to 64 samples, and 1.1
+/// from 256 to 1024.
+double path_error(const PathErrors& found, double spp) {
+    constexpr double kPlain_spp = 64;
+    const double plain = std::min(spp, kPlain_spp);
+    return found.at_16_spp * std::pow(16 / plain, found.slope) *
+           std::pow(plain / spp, 1 + 0.5 * (found.slope - 1));
+}
+
 }  // namespace
 
 CostRates nominal_rates(double rays_per_path) {
@@ -179,8 +189,7 @@ Schedule plan_path(const PilotFindings& found, const CostRates& rates, double se
     schedule.spp = found.lanes * static_cast<int>(packets);
     schedule.predicted_s = packets * packet_s;
     if (found.path) {
-        schedule.predicted_error =
-            found.path->at_16_spp * std::pow(16.0 / schedule.spp, found.path->slope);
+        schedule.predicted_error = path_error(*found.path, schedule.spp);
     }
     return schedule;
 }

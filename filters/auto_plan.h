@@ -42,7 +42,7 @@ CostRates slower(const CostRates& rates, double times);
 /// Errors are means of squared differences of sRGB-encoded values in [0,1], as of psnr_float_db.
 struct PathErrors {
     double at_16_spp = 0;
-    double slope = 1;  ///< error falls as spp to the power of -slope
+    double slope = 1;  ///< up to 64 spp error falls as spp to the power of -slope; beyond, slower
 };
 
 /// Of needy pixels, what their noise is held against.
