@@ -54,6 +54,7 @@ inline void add_to_cluster(const TraceTask& task, const SampleLanes& sample, Mas
     add(cluster.normal, sample.surface.shading_normal, mask);
     add(cluster.albedo, sample.surface.albedo, mask);
     if (picks_lights(task)) {
+        add(cluster.unshadowed, sample.unshadowed, mask);
         add(cluster.picked, sample.picked, mask);
         cluster.picked_square += sum_of(square_of(sample.picked), mask);
         return;
@@ -83,6 +84,7 @@ inline void add_to_cluster(const TraceTask& task, const SampleLanes& sample, int
     add_lane(cluster.normal, sample.surface.shading_normal, lane);
     add_lane(cluster.albedo, sample.surface.albedo, lane);
     if (picks_lights(task)) {
+        add_lane(cluster.unshadowed, sample.unshadowed, lane);
         add_lane(cluster.picked, sample.picked, lane);
         cluster.picked_square += square_of(sample.picked)[lane];
         return;
@@ -110,7 +112,7 @@ inline bool belongs(const SampleLanes& sample, int lane, const Cluster& cluster)
 /// Sums of the samples of W pixels, each of its first surface.
 struct PilotLanes {
     Int object{}, surface{}, mirrors{};
-    Float3 first_normal{}, position{}, normal{}, albedo{}, emission{}, picked{};
+    Float3 first_normal{}, position{}, normal{}, albedo{}, emission{}, unshadowed{}, picked{};
     Float count{}, shadow_count{}, picked_square{};
     LightLanes lights[kMostExactLights]{};
 };
@@ -124,6 +126,7 @@ inline void add(PilotLanes& sums, const TraceTask& task, const SampleLanes& samp
     add3(sums.albedo, sample.surface.albedo);
     add3(sums.emission, sample.emission);
     if (picks_lights(task)) {
+        add3(sums.unshadowed, sample.unshadowed);
         add3(sums.picked, sample.picked);
         sums.picked_square += select(mask, square_of(sample.picked), Float{});
         return;
@@ -159,6 +162,9 @@ inline void store(const PilotOutput& out, int at, const TraceTask& task, const P
         store(lights[0].open + at, sums.picked.y);
         store(lights[0].seen + at, sums.picked.z);
         store(lights[1].exact + at, sums.picked_square);
+        store(lights[2].exact + at, sums.unshadowed.x);
+        store(lights[2].open + at, sums.unshadowed.y);
+        store(lights[2].seen + at, sums.unshadowed.z);
         return;
     }
     for (std::uint32_t i = 0; i < task.light_count; ++i) {

@@ -30,9 +30,12 @@ inline std::uint8_t quantise_8bit(float encoded) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(encoded, 0.0f, 1.0f) * 255.0f));
 }
 
+/// Of red, green and blue in luminance.
+constexpr float kLuminance[3] = {0.2126f, 0.7152f, 0.0722f};
+
 /// Of linear radiance.
 inline float luminance(float r, float g, float b) {
-    return 0.2126f * r + 0.7152f * g + 0.0722f * b;
+    return kLuminance[0] * r + kLuminance[1] * g + kLuminance[2] * b;
 }
 inline double luminance(const float (&rgb)[3]) {
     return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +

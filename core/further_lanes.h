@@ -106,6 +106,7 @@ inline void add_sums(const TraceTask& task, const PilotLanes& sums, int lane, Cl
     add_lane(cluster.normal, sums.normal, lane);
     add_lane(cluster.albedo, sums.albedo, lane);
     if (picks_lights(task)) {
+        add_lane(cluster.unshadowed, sums.unshadowed, lane);
         add_lane(cluster.picked, sums.picked, lane);
         cluster.picked_square += sums.picked_square[lane];
         return;

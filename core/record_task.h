@@ -14,6 +14,9 @@ namespace vecino {
 /// Up to so many emitters are looked at one by one, each with its exact irradiance and a shadow ray
 /// of its own; with more, each sample picks one of them.
 constexpr int kMostExactLights = 4;
+/// Up to so many, samples add up what would come from all of them were nothing in between, exactly,
+/// and only what is hidden of it is found by picking; with more, all is found so.
+constexpr int kMostSummedLights = 32;
 
 /// Surfaces told apart in one pixel.
 constexpr int kMostClusters = 4;
@@ -48,7 +51,8 @@ struct Cluster {
     float albedo[3];                     ///< times that of the mirrors
     float emission[3];                   ///< radiance sent to the camera
     LightSums lights[kMostExactLights];  ///< by emitter, unless each sample picks one; then:
-    float picked[3];                     ///< light over pi
+    float unshadowed[3];                 ///< light over pi of all, as if nothing were in between
+    float picked[3];                     ///< light over pi: what is hidden of it, or what is seen
     float picked_square;                 ///< of its luminance
 };
 
@@ -74,8 +78,8 @@ struct PilotBlock {
 };
 
 /// What goes with a PilotBlock: one for each emitter that is looked at on its own. Where each
-/// sample picks one, the first holds the light over pi in red, green and blue, and the second as
-/// `exact` the square of its luminance.
+/// sample picks one, the first holds the light over pi in red, green and blue, the second as
+/// `exact` the square of its luminance, and the third the unshadowed light as the first does.
 struct PilotLight {
     alignas(64) float exact[kPilotPixels];
     float open[kPilotPixels];

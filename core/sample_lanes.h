@@ -21,6 +21,11 @@ inline bool picks_lights(const TraceTask& task) {
     return task.light_count > static_cast<std::uint32_t>(kMostExactLights);
 }
 
+/// Of those, whether what is picked is hidden light.
+inline bool sums_lights(const TraceTask& task) {
+    return picks_lights(task) && task.light_count <= static_cast<std::uint32_t>(kMostSummedLights);
+}
+
 struct LightLanes {
     Float exact, open, seen;
 };
@@ -34,7 +39,7 @@ struct SampleLanes {
     Float3 emission;
     Mask looked;  ///< whose light was looked at
     LightLanes lights[kMostExactLights];
-    Float3 picked;
+    Float3 unshadowed, picked;
 };
 
 inline Surface select(Mask m, const Surface& a, const Surface& b) {
@@ -95,7 +100,18 @@ inline LightLanes look_at_light(Tracer& tracer, const TraceTask& task, const Sur
     return out;
 }
 
-/// Light over pi by one of many emitters.
+/// Light over pi of all emitters, as if nothing were in between.
+inline Float3 unshadowed_light(const TraceTask& task, const Surface& s, Mask active) {
+    const Float3 from = ray_origin(s);
+    Float3 sum{};
+    for (std::uint32_t i = 0; i < task.light_count; ++i) {
+        const Emitter light = emitter_number(task, i);
+        sum = sum + light.radiance * exact_irradiance(light, from, s.shading_normal);
+    }
+    return select(active, sum, Float3{});
+}
+
+/// Light over pi by one of many emitters: what is hidden of it, or what is seen.
 inline Float3 look_at_picked(Tracer& tracer, const TraceTask& task, const Surface& s, Mask active,
                              Pair random) {
     const Float3 from = ray_origin(s);
@@ -104,7 +120,8 @@ inline Float3 look_at_picked(Tracer& tracer, const TraceTask& task, const Surfac
     LightLanes lanes{};
     look_at_point(tracer, s, light, sample.point, active & (light.probability > 0.0f), lanes);
     const Float share = 1.0f / max(light.probability, splat(1e-30f));
-    return light.radiance * (lanes.seen * share);
+    const Float light_there = sums_lights(task) ? lanes.open - lanes.seen : lanes.seen;
+    return light.radiance * (light_there * share);
 }
 
 inline Mask reflects(const Surface& s) {
@@ -116,7 +133,7 @@ template <class Asked>
 inline void look_at_lights(Tracer& tracer, const TraceTask& task, const PathRandom& random,
                            const Asked& asked, SampleLanes& sample) {
     sample.looked = Mask{};
-    sample.picked = Float3{};
+    sample.unshadowed = sample.picked = Float3{};
     for (LightLanes& light : sample.lights) light = LightLanes{};
     if (task.max_depth < 1) return;
     // Light that has come by mirrors has bounces behind it.
@@ -124,6 +141,7 @@ inline void look_at_lights(Tracer& tracer, const TraceTask& task, const PathRand
     if (!any(active)) return;
     if (picks_lights(task)) {
         sample.looked = active;
+        if (sums_lights(task)) sample.unshadowed = unshadowed_light(task, sample.surface, active);
         sample.picked = look_at_picked(tracer, task, sample.surface, active, random.pair(1));
         return;
     }

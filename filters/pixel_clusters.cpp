@@ -2,6 +2,7 @@
 #include "filters/pixel_clusters.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace vecino {
@@ -10,7 +11,7 @@ PixelClusters::PixelClusters(int width, int most_rows, int lights)
     : width_(width),
       blocks_per_row_(static_cast<std::size_t>((width + kPilotPixels - 1) / kPilotPixels)),
       picks_(lights > kMostExactLights),
-      light_planes_(picks_ ? 2 : static_cast<std::size_t>(lights)),
+      light_planes_(picks_ ? 3 : static_cast<std::size_t>(lights)),
       blocks_(
           std::make_unique<PilotBlock[]>(blocks_per_row_ * static_cast<std::size_t>(most_rows))),
       lights_(std::make_unique<PilotLight[]>(blocks_per_row_ * static_cast<std::size_t>(most_rows) *
@@ -78,6 +79,9 @@ Cluster PixelClusters::first_cluster(int x, int y) const {
         to.picked[1] = planes[0].open[i];
         to.picked[2] = planes[0].seen[i];
         to.picked_square = planes[1].exact[i];
+        to.unshadowed[0] = planes[2].exact[i];
+        to.unshadowed[1] = planes[2].open[i];
+        to.unshadowed[2] = planes[2].seen[i];
         return to;
     }
     for (std::size_t k = 0; k < light_planes_; ++k)
@@ -102,6 +106,9 @@ void PixelClusters::store_first(int x, int y, const Cluster& from) {
         planes[0].open[i] = from.picked[1];
         planes[0].seen[i] = from.picked[2];
         planes[1].exact[i] = from.picked_square;
+        planes[2].exact[i] = from.unshadowed[0];
+        planes[2].open[i] = from.unshadowed[1];
+        planes[2].seen[i] = from.unshadowed[2];
         return;
     }
     for (std::size_t k = 0; k < light_planes_; ++k) {
@@ -168,7 +175,10 @@ float share_in_sight(const LightSums& sums) {
 
 glm::vec3 direct_light(const TraceTask& task, const Cluster& cluster) {
     if (picks_lights(task)) {
-        return vector(cluster.picked) * (1.0f / std::max(cluster.shadow_count, 1.0f));
+        const float share = 1.0f / std::max(cluster.shadow_count, 1.0f);
+        if (!sums_lights(task)) return vector(cluster.picked) * share;
+        const glm::vec3 left = vector(cluster.unshadowed) - vector(cluster.picked);
+        return glm::max(left, glm::vec3(0.0f)) * share;
     }
     glm::vec3 light(0.0f);
     const float share = 1.0f / std::max(cluster.count, 1.0f);

@@ -35,6 +35,11 @@ inline bool picks_lights(const TraceTask& task) {
     return task.light_count > static_cast<std::uint32_t>(kMostExactLights);
 }
 
+/// Of those, whether what is picked is hidden light, taken off the exact unshadowed one.
+inline bool sums_lights(const TraceTask& task) {
+    return picks_lights(task) && task.light_count <= static_cast<std::uint32_t>(kMostSummedLights);
+}
+
 class PixelClusters {
   public:
     /// Room for so many rows of a scene with so many emitters; none yet.

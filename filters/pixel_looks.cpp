@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/color.h"
 #include "core/eight_lanes.h"
 
 namespace vecino {
@@ -10,15 +11,24 @@ namespace {
 
 constexpr float kAlbedoJump2 = 1e-3f;   ///< squared difference that counts as an edge
 constexpr float kCreaseCosine = 0.95f;  ///< between normals; below, there is an edge
+constexpr float kLightJump = 0.02f;     ///< of LookRow::light: beside a lamp
 
 // As numbers, for vectors.
 constexpr std::int32_t kCoverage = kNeedsCoverage, kShadow = kNeedsShadow;
 
-VECINO_CLONES void look_at_block(const PilotBlock& block, const PilotLight* lights, int light_count,
-                                 std::size_t at, LookRow& row) {
+/// First samples, and the light that goes with them.
+struct LookedBlock {
+    const TraceTask& task;
+    const PilotBlock& block;
+    const PilotLight* lights;
+};
+
+VECINO_CLONES void look_at_block(const LookedBlock& looked, std::size_t at, LookRow& row) {
+    const auto& [task, block, lights] = looked;
+    const bool picks = picks_lights(task);
     const Floats8 none = {};
     for (std::size_t i = 0; i < kPilotPixels; i += 8) {
-        Floats8 count, x, y, z, value, seen, open;
+        Floats8 count, x, y, z, value, seen, open, light = {};
         Masks8 object, own = {}, bits = {};
         load(block.object + i, object);
         store(object, row.object.data() + at + i);
@@ -37,31 +47,44 @@ VECINO_CLONES void look_at_block(const PilotBlock& block, const PilotLight* ligh
         store(x * value, row.normal[0].data() + at + i);
         store(y * value, row.normal[1].data() + at + i);
         store(z * value, row.normal[2].data() + at + i);
-        if (light_count > kMostExactLights) {
+        if (picks) {
             load(lights[1].exact + i, value);
             own |= (value > 0.0f) & kShadow;
         }
-        for (int l = 0; l < light_count && light_count <= kMostExactLights; ++l) {
+        if (sums_lights(task)) {
+            load(lights[2].exact + i, x);
+            load(lights[2].open + i, y);
+            load(lights[2].seen + i, z);
+            light = kLuminance[0] * x + kLuminance[1] * y + kLuminance[2] * z;
+        }
+        for (int l = 0; !picks && l < static_cast<int>(task.light_count); ++l) {
+            const float* const radiance = task.lights[l].radiance;
             load(lights[l].seen + i, seen);
             load(lights[l].open + i, open);
             load(lights[l].exact + i, value);
             bits |= ((seen > 0.0f) & (1 << l)) | ((value > 0.0f) & (256 << l));
             own |= (seen > 0.0f) & (seen < open) & kShadow;
+            light += value * luminance(radiance[0], radiance[1], radiance[2]);
         }
+        light *= share;
+        light = light < 1.0f ? light : none + 1.0f;
+        light *= share;
+        for (int k = 0; k < 8; ++k) value[k] = __builtin_sqrtf(light[k]);
+        store(value, row.light.data() + at + i);
         store(own, row.own.data() + at + i);
         store(bits, row.lights.data() + at + i);
     }
 }
 
-void add_list(const ClusterList& list, int light_count, std::int32_t& own) {
+void add_list(const ClusterList& list, const TraceTask& task, std::int32_t& own) {
     own |= kNeedsCoverage;
     for (int k = 0; k < list.count; ++k) {
         const Cluster& cluster = list.clusters[k];
-        if (light_count > kMostExactLights) {
+        if (picks_lights(task)) {
             if (cluster.picked_square > 0) own |= kNeedsShadow;
             continue;
         }
-        for (int l = 0; l < light_count; ++l) {
+        for (std::uint32_t l = 0; l < task.light_count; ++l) {
             const LightSums& sums = cluster.lights[l];
             if (sums.seen > 0 && sums.seen < sums.open) own |= kNeedsShadow;
         }
@@ -73,13 +96,18 @@ struct LookPart {
     const std::int32_t* object;
     const std::int32_t* lights;
     const std::int32_t* own;
+    const float* light;
     const float* albedo[3];
     const float* normal[3];
 };
 
 LookPart part_of(const LookRow& row, std::size_t from) {
-    LookPart part{
-        row.object.data() + from, row.lights.data() + from, row.own.data() + from, {}, {}};
+    LookPart part{row.object.data() + from,
+                  row.lights.data() + from,
+                  row.own.data() + from,
+                  row.light.data() + from,
+                  {},
+                  {}};
     for (int c = 0; c < 3; ++c) {
         part.albedo[c] = row.albedo[c].data() + from;
         part.normal[c] = row.normal[c].data() + from;
@@ -96,7 +124,7 @@ struct Eight {
 VECINO_INLINE void needs_of_pairs(const LookPart& a, const LookPart& b, Eight eight,
                                   Masks8& needs) {
     const auto [i, count] = eight;
-    Floats8 jump2 = {}, cosine = {}, of_a, of_b;
+    Floats8 jump2 = {}, cosine = {}, of_a, of_b, light, other_light;
     Masks8 object, other, lights, other_lights, own, other_own;
     for (int c = 0; c < 3; ++c) {
         load(a.albedo[c] + i, of_a, count);
@@ -106,6 +134,9 @@ VECINO_INLINE void needs_of_pairs(const LookPart& a, const LookPart& b, Eight ei
         load(b.normal[c] + i, of_b, count);
         cosine += of_a * of_b;
     }
+    load(a.light + i, light, count);
+    load(b.light + i, other_light, count);
+    light -= other_light;
     load(a.object + i, object, count);
     load(b.object + i, other, count);
     load(a.lights + i, lights, count);
@@ -113,7 +144,8 @@ VECINO_INLINE void needs_of_pairs(const LookPart& a, const LookPart& b, Eight ei
     load(a.own + i, own, count);
     load(b.own + i, other_own, count);
     const Masks8 crease = (object >= 0) & (cosine < kCreaseCosine);
-    const Masks8 edge = (object != other) | crease | (jump2 > kAlbedoJump2);
+    const Masks8 steep = (light > kLightJump) | (light < -kLightJump);
+    const Masks8 edge = (object != other) | crease | steep | (jump2 > kAlbedoJump2);
     const Masks8 reachable = (lights & other_lights) >> 8;
     const Masks8 differs = ((lights ^ other_lights) & reachable & 255) != 0;
     const Masks8 shadow = (object == other) & differs;
@@ -148,15 +180,15 @@ void look_at_row(const TraceTask& task, const PixelClusters& clusters, int y, Lo
         row.albedo[c].resize(padded);
         row.normal[c].resize(padded);
     }
+    row.light.resize(padded);
     if (padded == 0) return;
-    const int light_count = static_cast<int>(task.light_count);
     for (int x = 0; x < clusters.width(); x += kPilotPixels) {
-        look_at_block(clusters.block(x, y), clusters.lights(x, y), light_count,
+        look_at_block({task, clusters.block(x, y), clusters.lights(x, y)},
                       static_cast<std::size_t>(x), row);
         const int end = std::min(x + kPilotPixels, clusters.width());
         for (int i = x; i < end; ++i) {
             const ClusterList* const list = clusters.list(i, y);
-            if (list != nullptr) add_list(*list, light_count, row.own[static_cast<std::size_t>(i)]);
+            if (list != nullptr) add_list(*list, task, row.own[static_cast<std::size_t>(i)]);
         }
     }
 }

@@ -12,7 +12,7 @@ namespace vecino {
 
 /// Why a pixel wants more samples; a set of bits.
 enum Need : std::uint8_t {
-    kNeedsCoverage = 1,  ///< several surfaces or albedos may share it
+    kNeedsCoverage = 1,  ///< several surfaces, albedos or much different light may share it
     kNeedsShadow = 2,    ///< what is in sight of the light differs within it or around it
     kWideShadow = 4,     ///< and all around it, as far as fit_half_shadow() looks
 };
@@ -24,6 +24,9 @@ struct LookRow {
     /// hide it.
     std::vector<std::int32_t> lights;
     std::vector<std::int32_t> own;  ///< needs that a pixel has whatever is around it
+    /// Unshadowed light over pi, about as bright as it shows on white, from 0 to 1; over the root of
+    /// samples, as the noise is that comes of its change within the pixel.
+    std::vector<float> light;
     std::vector<float> albedo[3], normal[3];
 };
 

@@ -64,7 +64,14 @@ int wide_of(int pilot_spp) {
 
 /// Beyond a wide half-shadow as far as is known.
 constexpr int kFadesOut = 2;
-static_assert(2 * kWideOfFew + kFadesOut <= kNeedsReach);
+
+/// Where samples pick one of many emitters, few of them find what hides one: around each that does.
+constexpr int kMostScattered = 3;
+static_assert(2 * kWideOfFew + kFadesOut + kMostScattered <= kNeedsReach);
+int scattered_of(int pilot_spp) {
+    if (pilot_spp >= 16) return 1;
+    return pilot_spp >= 4 ? 2 : kMostScattered;
+}
 
 MarkRows marks_of(const NeedyRows& rows, int width, std::uint8_t needs) {
     MarkRows marks(rows.size(), width);
@@ -118,7 +125,8 @@ NeedyRows find_needs(const RecordTracer& tracer, const PixelClusters& clusters, 
     const RowRange around{std::max(rows.begin - kNeedsReach, clusters.rows().begin),
                           std::min(rows.end + kNeedsReach, clusters.rows().end)};
     const NeedyRows known = find_known(tracer, clusters, around);
-    const MarkRows shadow = marks_of(known, clusters.width(), kNeedsShadow);
+    MarkRows shadow = marks_of(known, clusters.width(), kNeedsShadow);
+    if (sums_lights(tracer.task)) shadow = shadow.near(scattered_of(pilot_spp));
     const MarkRows wide = shadow.within(wide_reach);
     const MarkRows marked = shadow.near(reach_of(pilot_spp)) | wide.near(wide_reach + kFadesOut);
     NeedyRows needy(static_cast<std::size_t>(rows.end - rows.begin));

@@ -22,7 +22,7 @@ struct NeedyPixel {
 using NeedyRows = std::vector<std::vector<NeedyPixel>>;
 
 /// So far around rows find_needs() looks.
-constexpr int kNeedsReach = 14;
+constexpr int kNeedsReach = 17;
 
 /// Of rows of the clusters; their neighbours are looked at where there are any. pilot_spp: in a
 /// wide half-shadow a few first samples often agree by chance, and those of a pixel's neighbours

@@ -44,10 +44,15 @@ VECINO_CLONES void shade_block(const PilotBlock& block, const PilotLight* lights
         points.normal_world[2][i] = z * per_length;
     }
     if (picks_lights(task)) {
-        for (int i = 0; i < kPilotPixels; ++i) {
-            out.direct[0][i] = lights[0].exact[i] * shadow_share[i];
-            out.direct[1][i] = lights[0].open[i] * shadow_share[i];
-            out.direct[2][i] = lights[0].seen[i] * shadow_share[i];
+        const bool sums = sums_lights(task);
+        const float* const picked[] = {lights[0].exact, lights[0].open, lights[0].seen};
+        const float* const unshadowed[] = {lights[2].exact, lights[2].open, lights[2].seen};
+        for (int c = 0; c < 3; ++c) {
+            for (int i = 0; i < kPilotPixels; ++i) {
+                const float left = unshadowed[c][i] - picked[c][i];
+                const float light = sums ? (left > 0.0f ? left : 0.0f) : picked[c][i];
+                out.direct[c][i] = light * shadow_share[i];
+            }
         }
         return;
     }

@@ -2,6 +2,9 @@
 //
 // The method surface_records where few samples, or few records, mislead.
 #include <algorithm>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "tests/record_renders.h"
 #include "tests/scene_text.h"
@@ -38,6 +41,63 @@ TEST_CASE("half-shadow without further samples is smooth, and hard edges stay ha
     }
     CHECK(threads[0] == threads[1]);
     CHECK(db(threads[0], paths(many, settings, 256)) > 26.8);  // 25.6 so
+}
+
+namespace {
+
+/// Each lamp in four, which shine as it does: more lamps than samples sum up.
+Scene with_split_lamps(Scene scene) {
+    std::vector<Object> objects;
+    for (const Object& object : scene.objects) {
+        const auto* const quad = std::get_if<Quad>(&object.shape);
+        if (quad == nullptr || scene.materials[object.material].emission == glm::vec3(0.0f)) {
+            objects.push_back(object);
+            continue;
+        }
+        const auto& [a, b, c, d] = quad->corners_world;
+        const glm::vec3 ab = 0.5f * (a + b), bc = 0.5f * (b + c), cd = 0.5f * (c + d),
+                        da = 0.5f * (d + a), middle = 0.5f * (ab + cd);
+        for (const Quad& part : {Quad{{a, ab, middle, da}}, Quad{{ab, b, bc, middle}},
+                                 Quad{{middle, bc, c, cd}}, Quad{{da, middle, cd, d}}})
+            objects.push_back({part, object.material});
+    }
+    scene.objects = std::move(objects);
+    return scene;
+}
+
+/// The corridor below its lamps.
+Scene low_corridor() {
+    Scene scene = repository_scene("corridor");
+    scene.camera.look_at_world = {0.0f, 0.0f, -0.6f};
+    return scene;
+}
+
+/// With something that throws shadows.
+Scene corridor_with_balls() {
+    Scene scene = low_corridor();
+    const std::size_t material = scene.objects.front().material;
+    scene.objects.push_back({Sphere{{-0.4f, 0.4f, -1.6f}, 0.4f}, material});
+    scene.objects.push_back({Sphere{{0.35f, 0.9f, -2.6f}, 0.35f}, material});
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("of many lamps, what nothing hides has no noise, and shadows come out right",
+          "[surface_records]") {
+    RenderSettings settings = small_settings({160, 160}, 1);
+    settings.max_depth = 1;
+    const SurfaceRecordsPlan few{1, 4, 16, 0, 64, 64, 1.0, 0.15}, many{16, 512, 16, 0, 64, 64};
+    const auto quality = [&](const Scene& scene, const SurfaceRecordsPlan& plan) {
+        return db(records(scene, settings, plan).frame.radiance, paths(scene, settings, 1024));
+    };
+    const Scene corridor = low_corridor(), balls = corridor_with_balls();
+    CHECK(quality(corridor, few) > 54);
+    CHECK(quality(balls, few) > 49);
+    CHECK(quality(balls, many) > 67);
+    // Of 48 lamps all is found by picking.
+    CHECK(quality(with_split_lamps(corridor), few) > 46);
+    CHECK(quality(with_split_lamps(balls), many) > 66);
 }
 
 TEST_CASE("half-shadow is fitted to the pixels around, and fades out", "[surface_records]") {

@@ -39,6 +39,7 @@ void check_same(const TraceTask& task, const Cluster& a, const Cluster& b) {
         CHECK(is_near(a.albedo[c], b.albedo[c]));
         CHECK(is_near(a.emission[c], b.emission[c]));
         CHECK(is_near(a.picked[c], b.picked[c]));
+        CHECK(is_near(a.unshadowed[c], b.unshadowed[c]));
     }
     for (std::uint32_t l = 0; l < task.light_count && l < kMostExactLights; ++l) {
         CHECK(is_near(a.lights[l].exact, b.lights[l].exact));
