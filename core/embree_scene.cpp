@@ -168,7 +168,10 @@ void attach_shapes(RTCDevice device, RTCScene scene, Shapes<Shape>& shapes, unsi
 #define VECINO_CALL_ONE(function, scene, ray) function(scene, ray, &args.value)
 struct IntersectArguments {
     RTCIntersectArguments value;
-    IntersectArguments() { rtcInitIntersectArguments(&value); }
+    explicit IntersectArguments(Rays rays) {
+        rtcInitIntersectArguments(&value);
+        if (rays == Rays::coherent) value.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    }
 };
 struct OccludedArguments {
     RTCOccludedArguments value;
@@ -179,26 +182,29 @@ struct OccludedArguments {
 #define VECINO_CALL_ONE(function, scene, ray) function(scene, &args.value, ray)
 struct IntersectArguments {
     RTCIntersectContext value;
-    IntersectArguments() { rtcInitIntersectContext(&value); }
+    explicit IntersectArguments(Rays rays = Rays::scattered) {
+        rtcInitIntersectContext(&value);
+        if (rays == Rays::coherent) value.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    }
 };
 using OccludedArguments = IntersectArguments;
 #endif
 
 template <int W>
 struct Packet;
-#define VECINO_PACKET(W)                                                       \
-    template <>                                                                \
-    struct Packet<W> {                                                         \
-        using Ray = RTCRay##W;                                                 \
-        using RayHit = RTCRayHit##W;                                           \
-        static void intersect(const int* valid, RTCScene scene, RayHit* ray) { \
-            IntersectArguments args;                                           \
-            VECINO_CALL(rtcIntersect##W, valid, scene, ray);                   \
-        }                                                                      \
-        static void occluded(const int* valid, RTCScene scene, Ray* ray) {     \
-            OccludedArguments args;                                            \
-            VECINO_CALL(rtcOccluded##W, valid, scene, ray);                    \
-        }                                                                      \
+#define VECINO_PACKET(W)                                                                  \
+    template <>                                                                           \
+    struct Packet<W> {                                                                    \
+        using Ray = RTCRay##W;                                                            \
+        using RayHit = RTCRayHit##W;                                                      \
+        static void intersect(const int* valid, RTCScene scene, RayHit* ray, Rays rays) { \
+            IntersectArguments args(rays);                                                \
+            VECINO_CALL(rtcIntersect##W, valid, scene, ray);                              \
+        }                                                                                 \
+        static void occluded(const int* valid, RTCScene scene, Ray* ray) {                \
+            OccludedArguments args;                                                       \
+            VECINO_CALL(rtcOccluded##W, valid, scene, ray);                               \
+        }                                                                                 \
     };
 VECINO_PACKET(4)
 VECINO_PACKET(8)
@@ -213,8 +219,8 @@ struct Packet<1> {
         RTCHitNt<1> hit;
     };
     static_assert(sizeof(RayHit) == sizeof(RTCRayHit) && sizeof(Ray) == sizeof(RTCRay));
-    static void intersect(const int* valid, RTCScene scene, RayHit* ray) {
-        IntersectArguments args;
+    static void intersect(const int* valid, RTCScene scene, RayHit* ray, Rays rays) {
+        IntersectArguments args(rays);
         if (*valid != 0) VECINO_CALL_ONE(rtcIntersect1, scene, reinterpret_cast<RTCRayHit*>(ray));
     }
     static void occluded(const int* valid, RTCScene scene, Ray* ray) {
@@ -245,6 +251,10 @@ struct EmbreeScene::Handles {
     Owned<RTCScene, ReleaseScene> scene;
     Shapes<SphereShape> spheres;
     Shapes<ParallelogramShape> parallelograms;
+    bool is_large = false;
+
+    /// In a small tree, to keep rays together costs more than it saves.
+    [[nodiscard]] Rays worth_it(Rays rays) const { return is_large ? rays : Rays::scattered; }
 };
 
 EmbreeScene::EmbreeScene(const EmbreeGeometry& geometry) : handles_(nullptr) {
@@ -269,6 +279,9 @@ EmbreeScene::EmbreeScene(const EmbreeGeometry& geometry) : handles_(nullptr) {
     }
     if (geometry.triangle_count > 0) attach_triangles(device, scene, geometry);
     if (geometry.sphere_count > 0) attach_shapes(device, scene, handles->spheres, kSpheres);
+    constexpr std::size_t kFew = 32;
+    handles->is_large =
+        geometry.quad_count + geometry.triangle_count + geometry.sphere_count > kFew;
     rtcCommitScene(scene);
     const RTCError error = rtcGetDeviceError(handles->device.get());
     if (error != RTC_ERROR_NONE) {
@@ -282,10 +295,11 @@ EmbreeScene::~EmbreeScene() {
 }
 
 template <int W>
-void EmbreeScene::intersect(const std::int32_t (&active)[W], HitPacket<W>& hits) const {
+void EmbreeScene::intersect(const std::int32_t (&active)[W], HitPacket<W>& hits, Rays rays) const {
     static_assert(kSameLayout<W>);
     Packet<W>::intersect(active, handles_->scene.get(),
-                         reinterpret_cast<typename Packet<W>::RayHit*>(&hits));
+                         reinterpret_cast<typename Packet<W>::RayHit*>(&hits),
+                         handles_->worth_it(rays));
 }
 
 template <int W>
@@ -294,8 +308,8 @@ void EmbreeScene::occluded(const std::int32_t (&active)[W], RayPacket<W>& rays) 
                         reinterpret_cast<typename Packet<W>::Ray*>(&rays));
 }
 
-#define VECINO_INSTANTIATE(W)                                                               \
-    template void EmbreeScene::intersect<W>(const std::int32_t(&)[W], HitPacket<W>&) const; \
+#define VECINO_INSTANTIATE(W)                                                                     \
+    template void EmbreeScene::intersect<W>(const std::int32_t(&)[W], HitPacket<W>&, Rays) const; \
     template void EmbreeScene::occluded<W>(const std::int32_t(&)[W], RayPacket<W>&) const;
 VECINO_INSTANTIATE(1)
 VECINO_INSTANTIATE(4)

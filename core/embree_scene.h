@@ -39,6 +39,12 @@ constexpr std::uint32_t kNoGeometry = 0xFFFFFFFFu;
 
 struct EmbreeGeometry;  // embree_geometry.h
 
+/// How those of a packet lie to each other. Hits do not depend on it, the time does.
+enum class Rays {
+    scattered,  ///< anyhow
+    coherent,   ///< about the same way from about the same place: they are traversed together
+};
+
 class EmbreeScene {
   public:
     /// Copies the geometry. Throws std::runtime_error with Embree's reason.
@@ -50,7 +56,7 @@ class EmbreeScene {
     /// Rays whose active is -1; those of 0 are left alone. Defined for W = 1, 4,
     /// 8, 16.
     template <int W>
-    void intersect(const std::int32_t (&active)[W], HitPacket<W>& hits) const;
+    void intersect(const std::int32_t (&active)[W], HitPacket<W>& hits, Rays rays) const;
 
     /// Sets t_far to -infinity where something lies before it.
     template <int W>

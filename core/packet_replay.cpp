@@ -23,7 +23,7 @@ std::uint64_t trace(const EmbreeScene& embree, const LoggedPacket<W>& packet) {
         hit.ray = packet.rays;
         std::ranges::fill(hit.geometry, kNoGeometry);
         std::ranges::fill(hit.instance[0], kNoGeometry);
-        embree.intersect(packet.active, hit);
+        embree.intersect(packet.active, hit, Rays::scattered);
         for (int i = 0; i < W; ++i) {
             const bool is_hit = packet.active[i] != 0 && hit.geometry[i] != kNoGeometry;
             hits += is_hit ? 1u : 0u;

@@ -15,7 +15,8 @@ namespace {
 
 struct Ray {
     Float3 origin;
-    Float3 direction;  ///< of any length but 0; distances count in lengths of it
+    Float3 direction;                 ///< of any length but 0; distances count in lengths of it
+    Rays relation = Rays::scattered;  ///< of the W to each other
 };
 
 /// What shading knows of the surfaces that W rays hit.
@@ -95,7 +96,7 @@ inline Ray Tracer::primary_ray(Float pixel_x, Float pixel_y) const {
     const Float up = 1.0f - pixel_y * (2.0f / static_cast<float>(task_.height));
     const Float3 direction = splat3(task_.camera_forward) + splat3(task_.camera_right) * right +
                              splat3(task_.camera_up) * up;
-    return {splat3(task_.camera_origin), normalise(direction)};
+    return {splat3(task_.camera_origin), normalise(direction), Rays::coherent};
 }
 
 inline Surface Tracer::trace(const Ray& ray, Mask active) {
@@ -106,7 +107,7 @@ inline Surface Tracer::trace(const Ray& ray, Mask active) {
     alignas(64) std::int32_t lanes[W];
     store(lanes, active);
     if (task_.packet_log) log_packet(*task_.packet_log, RayQuery::nearest_hit, lanes, hits.ray);
-    task_.embree->intersect(lanes, hits);
+    task_.embree->intersect(lanes, hits, ray.relation);
     rays_ += static_cast<std::uint64_t>(count(active));
     return shade(ray, hits, active);
 }
