@@ -45,7 +45,8 @@ class LightField {
     LightField(const PixelClusters& clusters, int light, bool picks)
         : clusters_(clusters), light_(light), picks_(picks) {}
 
-    /// Values are shares in sight, from 0 to 1, or light over pi where emitters are picked.
+    /// Values are shares in sight, from 0 to 1, or light over pi, hidden or seen,
+    /// where emitters are picked.
     [[nodiscard]] bool picks() const { return picks_; }
 
     /// Row y; without values unless it is one of rows.

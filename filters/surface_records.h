@@ -41,7 +41,9 @@ SurfaceRecordsPlan surface_records_plan(int spp);
 /// all but variance, which is left out, and the means of first hits, which are an error;
 /// sample_count counts primary rays. Scenes of a pattern are rendered as render() does. Throws as
 /// render() does, and Error(usage) for a setting that is out of range or for light sampling other
-/// than nee. Memory: that of the frame, and of a band of it of about two million pixels.
+/// than nee. Of up to 4 emitters each has its exact irradiance and shadow rays of its own; up to 32
+/// are exact where nothing hides them, and what is hidden is found by picking one a sample; of
+/// more, all is. Memory: that of the frame, and of a band of it of about two million pixels.
 Render render_surface_records(const Scene& scene, const RenderSettings& settings,
                               const SurfaceRecordsPlan& plan, const Progress& progress = {});
 
