@@ -24,8 +24,8 @@ struct LookRow {
     /// hide it.
     std::vector<std::int32_t> lights;
     std::vector<std::int32_t> own;  ///< needs that a pixel has whatever is around it
-    /// Unshadowed light over pi, about as bright as it shows on white, from 0 to 1; over the root of
-    /// samples, as the noise is that comes of its change within the pixel.
+    /// Unshadowed light over pi, about as bright as it shows on white, from 0 to 1; over the root
+    /// of samples, as the noise is that comes of its change within the pixel.
     std::vector<float> light;
     std::vector<float> albedo[3], normal[3];
 };
